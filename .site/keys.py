@@ -32,14 +32,14 @@ from fem.study.sweep_table import BAND, FOUND, SweepResult
 EXPLAINED = Path(__file__).parents[1] / "fem/case/keys.md"
 #: a file that is written by the user -> its tables
 FILES: dict[str, type[BaseModel]] = {"case": Case, **FILE_MODELS}
-#: a file of results -> what it is, and the rows of its table
-RESULTS: dict[str, tuple[type, Iterable[str]]] = {
-    "run.json": (RunResult, ()),
-    "sweep.json": (SweepResult, [*FOUND, *BAND]),
-    "ensemble.json": (EnsembleResult, ()),
-    "hall.json": (HallResult, [*OWN, *RESULT_COLUMNS]),
-    "response.json": (ResponseResult, ()),
-    "assess.json": (SiteResult, ()),
+#: a file of results -> what it is, the page that tells of it, and the columns of its table
+RESULTS: dict[str, tuple[type, str, Iterable[str]]] = {
+    "run.json": (RunResult, "results", ()),
+    "sweep.json": (SweepResult, "study", [*FOUND, *BAND]),
+    "ensemble.json": (EnsembleResult, "study", ()),
+    "hall.json": (HallResult, "study", [*OWN, *RESULT_COLUMNS]),
+    "response.json": (ResponseResult, "response", ()),
+    "assess.json": (SiteResult, "site", ()),
 }
 BOUNDS = {"ge": "at least", "gt": "more than", "le": "at most", "lt": "less than"}
 SHARED = 3  #: rows that a table has from another, from which on they are not told twice
@@ -205,11 +205,11 @@ def blocks_in(hint: Any) -> list[type]:
 def pages_of_results() -> Iterator[tuple[str, str]]:
     """What files of results hold: a page a file, a section a block; the figures of a run and its history apart."""
     seen: set[type] = set()
-    blocks = {file: list(blocks_of(kind, seen)) for file, (kind, _) in RESULTS.items()}
+    blocks = {file: list(blocks_of(kind, seen)) for file, (kind, *_) in RESULTS.items()}
     place = {block: f"{file.partition('.')[0]}.md" for file, inside in blocks.items() for block in inside}
     known = comments_of(RunResult) | comments_of(ActionResult) | comments_of(Verdict)
-    for file, (kind, of_rows) in RESULTS.items():
-        lines = [f"# `{file}`\n"]
+    for file, (kind, room, of_rows) in RESULTS.items():
+        lines = [f"# `{file}`\n", f"[What it tells](../../../fem/{room}/README.md), and its keys.\n"]
         for block in blocks[file]:
             hints, beside, said = get_type_hints(block, include_extras=True), comments_of(block), {}
             for name in (field.name for field in fields(block) if field.name not in FIGURES):

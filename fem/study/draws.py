@@ -35,10 +35,10 @@ class Distribution(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
 
     distribution: Literal["uniform", "log-uniform", "normal", "lognormal"]
-    least: float | None = Field(default=None, alias="from")
-    most: float | None = Field(default=None, alias="to")
-    mean: float | None = None
-    median: float | None = None
+    least: float | None = Field(default=None, alias="from")  #: smallest value of a uniform or log-uniform one
+    most: float | None = Field(default=None, alias="to")  #: largest value of these
+    mean: float | None = None  #: of a normal one
+    median: float | None = None  #: of a lognormal one
     deviation: float | None = None  #: standard deviation; of a lognormal quantity that of its logarithm
     cut: float = 3.0  #: deviations from the middle beyond which there are no values
     relative: bool = False  #: a factor on the value that the key has anyway
