@@ -4,6 +4,7 @@ All of it stands in one place, at the key: its description, unit, range and defa
 """
 
 import re
+import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from functools import cache
@@ -46,9 +47,8 @@ SHARED = 3  #: rows that a table has from another, from which on they are not to
 INDEX = """A page for each table of the files that you write, then one for each file of results.
 `python -m fem init` writes such a file with every key.
 """
-WHERE = (
-    "In `run.json` (`verdict`), and as columns in the tables of sweeps, ensembles, lists and sites. SI units."
-)
+HEAD = "key, unit, range, default, meaning"
+WHERE = "In `run.json` (`verdict`), and as columns in the tables of sweeps, lists and sites. SI units."
 FIGURES_TOO = "Beside them the keys that were varied, and the [figures of a run](figures.md)."
 
 
@@ -59,9 +59,9 @@ def parts(hint: Any) -> Iterator[Any]:
         yield from parts(part)
 
 
-def tables_in(hint: Any, kind: type = BaseModel) -> list[Any]:
+def tables_in(hint: Any) -> list[type[BaseModel]]:
     """The tables that a key holds."""
-    return [part for part in parts(hint) if isinstance(part, type) and issubclass(part, kind)]
+    return [part for part in parts(hint) if isinstance(part, type) and issubclass(part, BaseModel)]
 
 
 def first_of(text: str | None) -> str:
@@ -162,19 +162,15 @@ class KeyPages:
         shared: dict[str, list[str]] = {}
         for key, row in own.items():
             shared.setdefault(self.told.get(row, name), []).append(key)
-        about = (table.model_config.get("json_schema_extra") or {}).get("description") or first_of(
-            table.__doc__
-        )
-        lines = [f"# {title if name.endswith('/file') else f'`{title}`'}\n", f"{about}\n"]
+        extra: Any = table.model_config.get("json_schema_extra") or {}
+        lines = [f"# {title if name.endswith('/file') else f'`{title}`'}\n"]
+        lines += [f"{extra.get('description') or first_of(table.__doc__)}\n"]
         for page, same in shared.items():
             if page != name and len(same) >= SHARED:
                 lines += [f"As in [{page}](../{page}.md): {', '.join(f'`{key}`' for key in same)}.\n"]
                 own = {key: row for key, row in own.items() if key not in same}
         self.told = dict.fromkeys(own.values(), name) | self.told
-        lines += [
-            rows("key, unit, range, default, meaning", own.values()),
-            explained(name.partition("/")[2], keys),
-        ]
+        lines += [rows(HEAD, own.values()), explained(name.partition("/")[2], keys)]
         self.pages[name] = "\n".join([*lines, ""])
         for key, field in known_keys(table).items() if not name.endswith("/file") else ():
             for inner in tables_in(field.annotation):
@@ -232,7 +228,8 @@ def pages_of_results() -> Iterator[tuple[str, str]]:
 
 
 def write_pages(place: Path) -> None:
-    """Write all pages into a folder; one that has not changed is left alone, and so is not set again."""
+    """Write all pages into a folder, and leave none of those that were there."""
+    shutil.rmtree(place, ignore_errors=True)
     keys = KeyPages()
     for kind, model in FILES.items():
         keys.add_file(kind, model)
@@ -243,5 +240,4 @@ def write_pages(place: Path) -> None:
     for name, text in pages.items():
         path = place / f"{name}.md"
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.is_file() or path.read_text(encoding="utf-8") != text:
-            path.write_text(text, encoding="utf-8")
+        path.write_text(text, encoding="utf-8")
