@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import assert_never
+from typing import Any, assert_never
 
 from markupsafe import Markup
 from matplotlib.axes import Axes
@@ -28,6 +28,8 @@ WIDTH = 4.3  #: of the drawing [inch]
 WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]
 ABOVE, BELOW = 0.3, 1.2  #: room above and below the container [inch]
 BODY = "#E4EBF1"
+#: the look of where it may touch
+TOUCHES: dict[str, Any] = {"color": BLUE, "linewidth": 4, "solid_capstyle": "butt", "zorder": 5}
 MOST_HEIGHTS = 4  #: of boxes that differ, in one dimension
 
 
@@ -59,22 +61,18 @@ def sketch(
         _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit, slope=case.floor.slope)
         _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
         most = 0.4 * WIDTH * inch
-        left, right = (
-            min(low - 8 * unit, max(-most, ends[0] - 4 * unit)),
-            max(high + 22 * unit, min(most, ends[1] + 4 * unit)),
-        )
+        left = min(low - 8 * unit, max(-most, ends[0] - 4 * unit))
+        right = max(high + 22 * unit, min(most, ends[1] + 4 * unit))
         _dimension(axes, (left, 0.0), (left, height), _height(boxes))
         _dimension(axes, (right, 0.0), (right, centroid), f"$z_c$ = {short(centroid)} m", beyond=True)
         axes.plot((middle, right + unit), (centroid, centroid), color=GREY, linewidth=0.5)
         if case.motion.kind != "none":
-            axes.annotate(
-                "", (-10 * unit, -15 * unit), (10 * unit, -15 * unit), arrowprops=_arrow("<|-|>", BLUE)
-            )
+            ends_of_arrow = (-10 * unit, -15 * unit), (10 * unit, -15 * unit)
+            axes.annotate("", *ends_of_arrow, arrowprops=_arrow("<|-|>", BLUE))
+        words = _motion(case, peak_acceleration)
         if peak_vertical is not None:
             x = 15 * unit
             axes.annotate("", (x, -19 * unit), (x, -11 * unit), arrowprops=_arrow("<|-|>", BLUE))
-        words = _motion(case, peak_acceleration)
-        if peak_vertical is not None:
             words = [*words, f"vertical: {case.vertical.kind}, peak {short(peak_vertical)} m/s²"]
         axes.text(0.0, -17 * unit, "\n".join(words), color=BLUE, ha="center", va="top")
     stack = f" of {len(boxes)} {case.container.joints} boxes" if len(boxes) > 1 else ""
@@ -106,14 +104,7 @@ def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
     foot = case.foot or (unit if case.support.kind == "corners" else 0.5 * width)
     outer = 0.5 * width - case.support.inset
     for side in (-1.0, 1.0):
-        axes.plot(
-            (side * outer, side * (outer - foot)),
-            (0.0, 0.0),
-            color=BLUE,
-            linewidth=4,
-            solid_capstyle="butt",
-            zorder=5,
-        )
+        axes.plot((side * outer, side * (outer - foot)), (0.0, 0.0), **TOUCHES)
 
 
 def _height(boxes: Sequence[Box]) -> str:
@@ -164,11 +155,8 @@ def _draw_beside(axes: Axes, case: Case, unit: float) -> tuple[float, float]:
     row = case.row
     positions = places_of(case, [container.stack[0].width for container in row])
     for neighbour, x in zip(row[1:], positions.x[1:], strict=True):
-        left, width, height = (
-            x - 0.5 * neighbour.stack[0].width,
-            neighbour.stack[0].width,
-            neighbour.stack[-1].top,
-        )
+        width, height = neighbour.stack[0].width, neighbour.stack[-1].top
+        left = x - 0.5 * width
         axes.add_patch(Rectangle((left, 0.0), width, height, fc=BODY, ec=GREY, lw=0.8, clip_on=True))
         ends.append((left, left + width))
     for link in drawn_links(case):
@@ -190,14 +178,7 @@ def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:
     """Marks where a box may touch the next, as on the floor, and the friction between them."""
     for below, box in pairwise(case.stack):
         for end, inward in zip(shared_face(below, box), (unit, -unit), strict=True):
-            axes.plot(
-                (end, end + inward),
-                (box.bottom, box.bottom),
-                color=BLUE,
-                linewidth=4,
-                solid_capstyle="butt",
-                zorder=5,
-            )
+            axes.plot((end, end + inward), (box.bottom, box.bottom), **TOUCHES)
     static, kinetic = (case.joint_friction[name] for name in ("mu_static", "mu_kinetic"))
     words = f"loose, μ {short(static)}" + (f" / {short(kinetic)}" if kinetic != static else "")
     top = case.stack[-1]

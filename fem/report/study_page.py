@@ -179,11 +179,8 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         CaseError: the base case in it cannot be read.
     """
     info = read_study(folder, ENSEMBLE, EnsembleResult)
-    case, answer, name = (
-        load_case(str(folder / "base.toml")),
-        ensemble_answer(info),
-        info.ensemble or folder.name,
-    )
+    case, answer = load_case(str(folder / "base.toml")), ensemble_answer(info)
+    name = info.ensemble or folder.name
     limit, fell = f"{short(info.probability, 100.0)} %", falling_in_words(info.limit_slip_m, past=True)
     words = {"below": f"at most {limit}", "undecided": "not decided", "above": f"more than {limit}"}
     regions = ", ".join(f"{words[region]} at {count}" for region, count in info.regions.items() if count)
