@@ -30,6 +30,7 @@ include_patterns += [
 ]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
+myst_disable_syntax = ["myst_line_comment"]  # a line may begin with %
 suppress_warnings = ["misc.highlighting_failure"]  # a block of TOML with dots for what is left out
 autodoc_typehints = "description"
 smartquotes = False  # a text in a file has straight ones
