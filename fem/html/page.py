@@ -178,6 +178,7 @@ def _environment(*, autoescape: bool = True) -> Environment:
         loader=PackageLoader("fem.html", TEMPLATES),
         autoescape=autoescape,
         undefined=StrictUndefined,
+        optimized=False,  # most templates are set once, and compiling takes longer than that
         trim_blocks=True,
         lstrip_blocks=True,
     )
