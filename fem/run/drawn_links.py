@@ -110,7 +110,8 @@ class LinkCells:
         """A frame of the containers with its links; what is broken has shrunk to a point."""
         if not self._share.size:
             return frame
-        links = drawn_links(self._case, _broken(run, len(self._case.links)))
+        broken = [float(link.broken_at) for link in run.links[len(run.links) - len(self._case.links) :]]
+        links = drawn_links(self._case, broken)
         held, nothing = np.repeat(self._held, self._count), np.zeros(self._share.size)
         far_end = np.array((frame.floor_displacement, frame.floor_lift))
         moved = far_end + self._share * (frame.displacement[held] - far_end)
@@ -136,7 +137,3 @@ def _nodes(link: DrawnLink, square: FloatArray) -> FloatArray:
     across = STRAP * along[::-1] * (1.0, -1.0)
     moved: FloatArray = (link.outer, link.anchor) + square[:, 1:] * along + (square[:, :1] - 0.5) * across
     return moved
-
-
-def _broken(run: RunState, count: int) -> Sequence[float]:
-    return [float(link.broken_at) for link in run.links[len(run.links) - count :]]

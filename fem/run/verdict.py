@@ -106,17 +106,12 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         late = history["rotation_rad"][time >= time[-1] - 1.0 / model.static.frequency_parameter]
         if late.size > 1 and np.ptp(late) < STILL * model.static.slenderness_angle:
             verdict = replace(verdict, tilt_rad=float(late[-1]))
-    place, whose = _place_of(model)
-    return replace(verdict, place_m=place, place_is=whose)
-
-
-def _place_of(model: Model) -> tuple[float, str]:
-    """The slip beyond which a container has left its place [m], and whose it is: stated, the gap beside, the width."""
-    case = model.case
+    case, width = model.case, model.container.mesh.width
+    # the slip beyond which it has left its place: stated, the gap beside it, or its width
+    place = min([*((row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0), (width, "width")])
     if case.limits is not None and case.limits.slip_m is not None:
-        return case.limits.slip_m, "limit"
-    gaps = [(row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0]
-    return min([*gaps, (model.container.mesh.width, "width")])
+        place = case.limits.slip_m, "limit"
+    return replace(verdict, place_m=place[0], place_is=place[1])
 
 
 def verdict_from(
