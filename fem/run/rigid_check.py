@@ -7,6 +7,7 @@ Rotation > 0 toward +x.
 import math
 from dataclasses import dataclass
 from itertools import takewhile
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from fem.run.joints import AS_ONE, joints_in_words
 from fem.run.words import paragraphs
 from fem.runtime.arrays import FloatArray
 
-LIMITS = {
+LIMITS: dict[str, Any] = {
     "STIFF_CONTAINER": 7.0,  #: first elastic over contact frequency, from which an impact is a rigid block's
     "SOFT_FLOOR": 1e-3,  #: static penetration over width times slenderness angle: the gap that counts as an impact
     "BOUNCING_CONTACT": 1.0,  #: contact damping ratio below which an impact is not plastic

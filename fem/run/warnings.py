@@ -1,6 +1,7 @@
 """Warnings: what the reader must know before relying on a result. `warnings.txt.j2` says when, and in which words."""
 
 import math
+from typing import Any
 
 from contact.stepping.ledger import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from contact.stepping.modes import ROCKING
@@ -25,7 +26,7 @@ from fem.run.ranges import plastic_corner
 from fem.run.sureness import numerical
 from fem.run.words import paragraphs
 
-LIMITS = {
+LIMITS: dict[str, Any] = {
     "NEAR": 0.5,  #: share of a limit from which there is a warning
     "REJECTED_SHARE": 0.05,
     "FLIGHT": 0.05,  #: share of the rocking in the air from which it is said
