@@ -1,6 +1,7 @@
 """The words of a run: templates of `fem/html/templates` that read like what is said.
 
-A blank line ends a text; other white space counts as one space.
+A blank line ends a text; other white space counts as one space. Behind a line that ends in a tag, whose newline is not
+set, it takes two.
 """
 
 import re
