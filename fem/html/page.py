@@ -38,7 +38,6 @@ from fem.results.json_block import JsonBlock
 
 TEMPLATES = "templates"
 
-
 #: what templates set values with: numbers and units of `fem.html.units`, symbols, and columns of declared figures
 FILTERS = {
     "cell": lambda value, figure: figure_cell(figure, value),
