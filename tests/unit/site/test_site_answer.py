@@ -76,4 +76,5 @@ def test_the_margin_is_the_least_factor_at_which_any_limit_fails():
 def test_the_slip_in_two_directions_is_compared_with_the_clearance(slip, factor, expected, used):
     found = answer(runs(), repeated(), further(), two_directions=in_two_directions(slip, factor))
     assert (found.answer, found.margin_factor) == (expected, factor)
+    assert ("slip_m" in found.exceeded) == (slip > 0.1)
     assert found.actions[0].utilisation == pytest.approx(used)
