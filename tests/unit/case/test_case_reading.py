@@ -48,15 +48,6 @@ def test_a_case_knows_where_it_comes_from(tmp_path):
     assert case.overrides == ("contact.mu_static=0.3",)
 
 
-def test_a_change_leaves_the_case_as_it_was_and_says_what_changed():
-    case, stop = load_case("rocking"), {"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}
-    rows = [dict(stop)]
-    changed = case.with_values({"contact.mu_static": 0.5, "stop": rows, "stop.gap_m": 0.3})
-    assert (case.contact.mu_static, changed.contact.mu_static, changed.stop[0].gap_m) == (0.4, 0.5, 0.3)
-    assert rows == [stop] and not case.stop
-    assert (changed.name, changed.overrides[0]) == ("rocking", "contact.mu_static=0.5")
-
-
 @pytest.mark.parametrize(
     ("content", "expected"),
     [

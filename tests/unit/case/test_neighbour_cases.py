@@ -117,16 +117,3 @@ def test_the_file_is_read_once_and_is_part_of_the_hash(tmp_path):
 def test_a_case_that_cannot_stand_there_is_refused_with_its_reason(tmp_path, row, half, reason):
     with pytest.raises(CaseError, match=reason):
         load_case(written(tmp_path, row, half))
-
-
-def test_a_link_out_of_the_folder_is_refused_unless_the_user_allows_it(tmp_path):
-    row = written(tmp_path / "in")
-    (tmp_path / "in" / "half.toml").rename(tmp_path / "half.toml")
-    (tmp_path / "in" / "half.toml").symlink_to(tmp_path / "half.toml")
-    with pytest.raises(CaseError, match="leads out of the folder"):
-        load_case(row)
-    assert load_case(row, allow_outside=True).row[1].mass == 3600.0
-    named = load_case(row, ["neighbour.case=../half.toml"])
-    assert named.resolved()["neighbour"][0]["case"] == "data/half.toml" and list(named.texts) == [
-        "data/half.toml"
-    ]

@@ -17,11 +17,9 @@ from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case
 from fem.figures import style
 from fem.figures.cache import drawings_of
-from fem.figures.checks import band_figure
 from fem.figures.run import FIGURES, figures_of
 from fem.html.units import rounded
 from fem.model.container import discretise
-from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
 from fem.runtime.progress import Reporter
 
@@ -57,11 +55,6 @@ def runs(gallery):
 @pytest.fixture(scope="module")
 def drawn(runs):
     return {name: figures_of(run) for name, run in runs.items()}
-
-
-def changed(run, **blocks):
-    """The same run with other blocks in its result."""
-    return OpenedRun(place=run.place, result=run.result | blocks)
 
 
 def lines(axes, label):
@@ -132,18 +125,6 @@ def test_the_largest_rotation_is_on_the_curve_in_degrees(runs, drawn):
         assert np.abs(curve.get_ydata()).max() == pytest.approx(math.degrees(largest), rel=1e-12)
 
 
-def test_the_slenderness_angle_is_marked_or_said_to_be_off_the_scale(runs, drawn):
-    angle = math.degrees(math.atan(1.1 / 4.0))
-    axes = drawn["rigid"]["rotation"].axes[0]
-    assert lines(axes, "slenderness")[0].get_ydata() == pytest.approx([angle, angle], rel=1e-6)
-    low, high = axes.get_ylim()
-    assert low < -angle < angle < high
-    far = drawn["rests"]["rotation"].axes[0]
-    assert "far off the scale" in lines(far, "slenderness")[0].get_label()
-    # Rounding in a container at rest is not blown up to look like motion.
-    assert far.get_ylim()[1] >= math.degrees(0.01 * runs["rests"].slenderness_angle)
-
-
 def test_the_rigid_block_stands_beside_the_run(runs, drawn):
     (block,) = lines(drawn["rigid"]["rotation"].axes[0], "rigid block")
     expected = np.degrees(runs["rigid"].rigid_check["analytic_rotation_rad"])
@@ -186,26 +167,6 @@ def test_what_bolts_hold_is_drawn_from_the_instant_that_an_unbolted_joint_opens_
     opened = min(path[path[:, 1] != 0.0, 0].min() for path in held)
     assert opened == min(joint["opens_at_s"] for joint in joints if joint["opens_at_s"])
     assert "joints" not in drawn["slides"]  # one box
-
-
-def test_a_band_shows_every_member_the_fallen_above_the_slenderness_angle(runs):
-    member = {"normal_penalty_Pa_m": 1e9, "damping_ratio": 2.0, "status": "completed"}
-    member |= {"outcome": "rock", "rotation_ratio": 0.4}
-    fallen = {"normal_penalty_Pa_m": 3e9, "outcome": "overturned", "rotation_ratio": 5.9}
-    failed = {"damping_ratio": 0.5, "outcome": None, "rotation_ratio": None}
-    members = [member, member | fallen, member | failed]
-    band = {
-        "outcomes": ["rock", "overturned"],
-        "rotation_ratio": [0.4, 5.9],
-        "unsure": True,
-        "members": members,
-    }
-    with style.house_style():
-        figure = band_figure(changed(runs["rigid"], verdict={"band": band}))
-    axes = figure.axes[0]
-    places = sorted(line.get_ydata()[0] for line in axes.lines if len(line.get_xdata()) == 1)
-    assert places[:2] == [0.0, 0.4] and 1.0 < places[2] < axes.get_ylim()[1]
-    assert any("unsure" in text.get_text() for text in figure.texts)
 
 
 def test_no_peak_is_lost_in_a_long_curve():

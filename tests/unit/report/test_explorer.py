@@ -10,7 +10,6 @@ from browser import CHROMIUM, Browser
 
 import fem
 from fem.report.explorer import explorer
-from fem.results.errors import FolderError
 from fem.runtime.progress import Reporter
 from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep
@@ -58,18 +57,6 @@ def test_the_page_holds_the_motion_and_the_outcome_of_every_cell(made):
         assert np.abs(rotation[cell] - own).max() <= 0.51 * packed["largest"] / 32767
         assert data["cells"][cell]["first"] == run.verdict.first_line
     assert [axis["marks"] for axis in data["axes"]] == [[1], [0, 1]]  # the paper's
-
-
-def test_what_it_cannot_show_is_refused(made, tmp_path):
-    sweep, _ = made
-    loose = SWEEP.replace("[axes]", '"container.joints" = "loose"\n[axes]').replace("2.4, 4.0, 9.0", "2.4")
-    (tmp_path / "loose.toml").write_text(loose.replace("4.0\n", "0.1\n").replace('"all"', '"none"'))
-    boxes = load_sweep(str(tmp_path / "loose.toml"))
-    run_sweep(boxes, tmp_path / "out", jobs=1, resume=False, force=False, reporter=Reporter())
-    with pytest.raises(FolderError, match="draws one body"):
-        explorer(boxes, tmp_path / "out", 1)
-    with pytest.raises(FolderError, match="nothing"):
-        explorer(sweep, tmp_path / "nothing")
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")

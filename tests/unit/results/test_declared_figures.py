@@ -6,7 +6,6 @@ from dataclasses import fields
 import pytest
 
 from fem.case.case import load_case
-from fem.report.sweep_map import QUANTITIES
 from fem.results.figures import (
     FIGURES,
     SCALARS,
@@ -14,11 +13,8 @@ from fem.results.figures import (
     BoxResult,
     Place,
     keys_of,
-    summary_order,
 )
-from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
-from fem.run.ranges import in_words
-from fem.run.summary import result_rows
+from fem.results.run_result import Band, ChangedRun, Verdict
 from fem.site.result import SiteRun
 from fem.site.runs import COLUMNS
 from fem.study.runner import run_chunk
@@ -71,16 +67,6 @@ def test_a_figure_is_a_column_of_tables_and_of_the_runs_of_a_site():
     )
     assert set(keys_of(Place.RUNS)) <= set(COLUMNS)
     assert set(OF_FIELDS) & of_site.to_json().keys() == set(keys_of(Place.RUNS))
-
-
-def test_a_figure_is_a_row_of_the_summary_and_a_quantity_of_maps():
-    result = RunResult(status="completed", verdict=FULL)
-    rows = dict(result_rows(result))
-    assert sorted(summary_order()) == sorted(keys_of(Place.SUMMARY))
-    for key in keys_of(Place.SUMMARY):
-        name = FIGURES[key].words + (" of box 1" if FIGURES[key].lowest else "")
-        assert rows[name] == in_words(result, key)
-    assert set(QUANTITIES) >= set(keys_of(Place.MAP))
 
 
 def test_every_figure_is_filled_by_some_run():

@@ -147,15 +147,6 @@ def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypat
     other[0].__exit__(None, None, None)
 
 
-def test_two_runs_do_not_write_into_one_folder(tmp_path, capsys):
-    with locked_folder(tmp_path / "r"):
-        (tmp_path / "r" / "keep").write_text("")
-        assert command(tmp_path / "r", "--force") == 2
-    message = capsys.readouterr().err
-    assert "another run writes there, process" in message and "--out" in message
-    assert files_of(tmp_path / "r").keys() == {"keep"}
-
-
 def damage(folder: Path) -> None:
     content = bytearray((folder / "checkpoint.npz").read_bytes())
     content[len(content) // 2] ^= 1
@@ -177,11 +168,9 @@ def edit_history(folder: Path) -> None:
 
 FAULTS = {
     "damaged": (damage, "damaged"),
-    "other program": (lambda folder: rewrite(folder, program={"numpy": "1.0"}), "another version"),
     "other sizes": (lambda folder: rewrite(folder, ledger=np.zeros(3)), "its ledger is not that"),
     "no notes": (lambda folder: rewrite(folder, progress=None), "notes cannot be read"),
     "history edited": (edit_history, "history.csv was changed since"),
-    "history gone": (lambda folder: (folder / "history.csv").unlink(), "or is missing"),
     "frame gone": (
         lambda folder: (folder / "fields" / "frame_00002.vtu").unlink(),
         "frame_00002.vtu is miss",

@@ -13,7 +13,7 @@ import pytest
         (512, ("--no-band", "--no-margin"), 0),
         (512, (), 3),
         pytest.param(620, (), 0, marks=pytest.mark.slow),
-        (720, (), 0),
+        pytest.param(720, (), 0, marks=pytest.mark.slow),
     ],
 )
 def test_a_rigid_run_needs_no_more_than_512_mb_and_its_band_and_figures_more(

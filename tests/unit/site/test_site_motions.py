@@ -98,14 +98,6 @@ def with_a_fling(folder, seconds):
     return f'[motions]\nsource = "matched"\nvertical = false\nfiles = {json.dumps(names)}'
 
 
-def test_a_baseline_that_changes_a_matched_record_is_said_with_both_values(tmp_path):
-    asked = request(tmp_path, with_a_fling(tmp_path, 20.0))
-    first, *others = ground_motions(asked, 4.0)
-    (note,) = first.notes  # a sine pulse reaches A T/pi = 0.866 m/s
-    assert "from 3.4 " in note and "0.866 m/s with 'mean'" in note and "m/s (-8.8 %)" in note
-    assert not any(motion.notes for motion in others)
-
-
 def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
     motions = with_a_fling(tmp_path, 5.0)
     with pytest.raises(

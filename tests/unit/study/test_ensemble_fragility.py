@@ -12,17 +12,13 @@ TRUTH = Lognormal(median=5.0, deviation=0.3)
 DRAWS = np.full(17, 200.0)
 
 
-def counts_of(seed):
-    return np.random.default_rng(seed).binomial(200, TRUTH.probability(STRENGTHS)).astype(float)
-
-
 def test_exact_shares_give_the_curve_back():
     found = fit_lognormal(STRENGTHS, 200.0 * TRUTH.probability(STRENGTHS), DRAWS)
     assert (found.median, found.deviation) == (pytest.approx(5.0, rel=1e-6), pytest.approx(0.3, rel=1e-6))
 
 
 def test_the_fit_has_the_largest_likelihood():
-    counts = counts_of(3)
+    counts = np.random.default_rng(3).binomial(200, TRUTH.probability(STRENGTHS)).astype(float)
 
     def loss(parameters):
         z = (np.log(STRENGTHS) - parameters[0]) / np.exp(parameters[1])

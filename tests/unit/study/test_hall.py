@@ -244,7 +244,7 @@ def test_lists_of_every_spreadsheet_are_read(tmp_path, text, encoding):
 RECORD = "0 0\n0.1 1.5\n0.2 -2.5\n0.3 1\n0.4 0\n"
 
 
-@pytest.mark.parametrize("name", ["runs.csv", "list.csv", "figures"])
+@pytest.mark.parametrize("name", ["runs.csv", "figures"])
 def test_a_record_with_the_name_of_a_result_is_refused_before_anything_is_written(tmp_path, base, name):
     (tmp_path / name).write_text(RECORD, encoding="utf-8")
     motion = {"motion.kind": "table", "motion.file": name, "motion.unit": "m/s2"}

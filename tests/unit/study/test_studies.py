@@ -189,9 +189,8 @@ def test_a_finished_study_is_left_alone_and_another_is_refused(tmp_path, whole, 
     study(tmp_path, other=True)(folder, force=True)
 
 
-@STUDIES
-def test_results_of_another_program_are_not_continued(tmp_path, study, mark, log):
-    run, folder = study(tmp_path), tmp_path / "out"
+def test_results_of_another_program_are_not_continued(tmp_path):
+    run, folder, mark = hall(tmp_path), tmp_path / "out", "hall.json"
     with pytest.raises(KeyboardInterrupt):
         run(folder, reporter=Interrupting(1))
     found = json.loads((folder / mark).read_text())

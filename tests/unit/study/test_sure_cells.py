@@ -40,20 +40,6 @@ def keys_of(sweep, cell=0):
     return {key for copy in copies_of(sweep, cell) for key in copy.change.values}
 
 
-def test_every_copy_of_a_cell_is_another_case(sweep_of):
-    sweep = sweep_of(SMALL)
-    copies = copies_of(sweep, 7)
-    assert len({copy.name for copy in copies}) == len(copies)
-    cases = [
-        sweep.make.case(sweep.item(7)._replace(more=copy.change.values)).contact
-        for copy in copies
-        if not copy.small
-    ]
-    assert all(case.mu_kinetic <= case.mu_static for case in cases)
-    values = [dict(copy.change.values) for copy in copies]
-    assert all(values.count(one) == 1 for one in values)
-
-
 def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
     # Kinetic friction follows the static one, and step and penalty are those chosen for the cell.
     given = '"contact.mu_kinetic" = 0.4\n"contact.mu_static" = 0.4\n[axes]'
