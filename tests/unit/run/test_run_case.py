@@ -78,14 +78,9 @@ class TestEnd:
         assert error.startswith("step ")
         instant = float(error.split("t = ")[1].split(" s")[0])
         assert kept["time_s"][-1] <= instant <= kept["time_s"][-1] + 0.1
-        assert (
-            "did not converge at the smallest step (0.005 s), although the contact forces balance within"
-            in error
-        )
-        assert "softer contact.normal_penalty_Pa_m" in error
+        assert "did not converge at the smallest step (0.005 s)" in error and "softer" in error
         page = capsys.readouterr().out
-        assert "No verdict:" in page
-        assert "did not overturn" not in page
+        assert "No verdict:" in page and "did not overturn" not in page
 
     def test_an_energy_balance_beyond_its_limits_fails_the_run_which_has_no_checks_then(
         self, tmp_path, monkeypatch
