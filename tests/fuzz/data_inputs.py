@@ -128,23 +128,16 @@ HOSTILE: dict[str, Callable[[int], str]] = {
         + f"{'1' * 99}\n" * (size // 100)
     ),
     "brackets": lambda size: "(" * size + "\n0,1\n1,2\n",
-    "lines of brackets": lambda size: ("(" * 990 + "\n") * (size // 991) + "0,1\n1,2\n",
     "underscores": lambda size: "a_" * (size // 2) + "\n0,1\n1,2\n",
     "blanks in a header": lambda size: "a\nb\nc\nNPTS=1" + " " * size + "DT\n1\n",
     "numbers in a line": lambda size: "1," * (size // 2),
-    "columns": lambda size: ("1," * 490 + "\n") * (size // 981),
     "lines of nothing": lambda size: "\n" * size + "1",
-    "lines of words": lambda size: "a\n" * (size // 2),
     "a word behind numbers": lambda size: "0.005,-0.123456\n" * min(size // 16, MOST_SAMPLES - 1) + "a",
-    "a word behind three columns": lambda size: (
-        "1,-0.12345678,0.12345678\n" * min(size // 26, 990_000) + "1,1,a"
-    ),
     "a word behind those of ESM": lambda size: (
         record_text("ESM").replace("NDATA: 200", f"NDATA: {200 + size // 64}").rstrip("\n")
         + "\n-0.12345678" * (size // 64 - 1)
         + "\na"
     ),
-    "comments": lambda size: "#\n" * (size // 2),
 }
 SIZES = (40, 40_000, 2_000_000, 33_000_000, 60_000_000)
 ENDLESS = ("/proc/kmsg", "/dev/zero", "/dev/tty", "/proc/self/mem", "/proc/kcore")

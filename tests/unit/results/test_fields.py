@@ -1,13 +1,11 @@
 """Field output: what is written comes back, in meshio and in pyvista, at every moment of a run."""
 
-from xml.etree import ElementTree
-
 import meshio
 import numpy as np
 import pytest
 import pyvista
 
-from fem.results.fields import PROMPT_FRAMES, FieldWriter, FrameFields, open_fields
+from fem.results.fields import FieldWriter, FrameFields, open_fields
 
 POINTS = np.array([[x, z] for z in (0.0, 0.5, 1.0) for x in (0.0, 0.5, 1.0, 1.5, 2.0)])
 QUADS = np.array([[0, 2, 12, 10], [2, 4, 14, 12]])
@@ -118,17 +116,6 @@ def test_a_resumed_run_keeps_the_frames_up_to_there_and_no_others(tmp_path):
     assert not (tmp_path / "frame_00003.vtu").exists()
     writer(tmp_path)  # a new run removes them all
     assert [p.name for p in tmp_path.iterdir()] == ["run.pvd"]
-
-
-def test_long_series_are_listed_in_time_and_completely_at_the_end(tmp_path):
-    kept = [0.01 * i for i in range(3 * PROMPT_FRAMES)]
-    out = writer(tmp_path, kept_times=kept)
-    for i in range(5):
-        out.write(at(100.0 + i, **fields()))
-        listed = len(ElementTree.parse(tmp_path / "run.pvd").findall("./Collection/DataSet"))
-        assert 0 <= 3 * PROMPT_FRAMES + i + 1 - listed <= 3
-    out.close()
-    assert len(open_fields(tmp_path)) == 3 * PROMPT_FRAMES + 5
 
 
 def test_a_series_that_names_files_elsewhere_or_is_damaged_is_refused(tmp_path):

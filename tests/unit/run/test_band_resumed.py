@@ -12,7 +12,6 @@ from fem.__main__ import main
 from fem.case.case import case_hash
 from fem.results.kinds import read_result
 from fem.run import changed_runs
-from fem.run.changed_runs import ChangedRunsFile
 
 SHORT = (
     "solver.duration_s=0.5",
@@ -83,17 +82,3 @@ def test_members_that_cannot_be_trusted_are_reported_and_computed_again(tmp_path
     message = " ".join(capsys.readouterr().err.split())
     assert re.search(r"band.json is refused \([^)]*another case", message), message
     require_same(tmp_path / "cut", whole)
-
-
-def test_a_band_that_cannot_be_stored_ends_at_once(tmp_path, monkeypatch):
-    def no_room(*_):
-        raise OSError(28, "No space left on device", "band.json")
-
-    monkeypatch.setattr(ChangedRunsFile, "store", no_room)
-    begun, stepping = [], changed_runs.simulate
-    monkeypatch.setattr(
-        changed_runs, "simulate", lambda *rest, **options: begun.append(1) or stepping(*rest, **options)
-    )
-    assert main(command(tmp_path / "r", "solver.model=rigid")) == 3
-    assert len(begun) == 1
-    assert read_result(tmp_path / "r" / "run.json")["status"] == "completed"

@@ -120,15 +120,6 @@ def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch,
     require_resumed(tmp_path / "r", whole, "--resume")
 
 
-def test_a_folder_removed_during_the_run_ends_it_with_3(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(fem.run.output, "CHECKPOINT_S", 0.0)
-    at_time(monkeypatch, 1.0, lambda: shutil.rmtree(tmp_path / "r"))
-    assert command(tmp_path / "r") == 3
-    message = capsys.readouterr().err
-    assert str(tmp_path / "r") in message and "Traceback" not in message
-    assert not (tmp_path / "r").exists()
-
-
 def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypatch):
     other = []
 

@@ -91,14 +91,3 @@ def test_messages_and_lines_are_printed_as_they_are(terminal):
     screen.finish()
     assert "compiling [red]kernels[/red]: once" in stream.getvalue()
     assert "3 of 9 [bold]rows[/bold]" in stream.getvalue()
-
-
-def test_quiet_and_silent_reporters_print_nothing():
-    screen, stream, clock = reporter(terminal=True, quiet=True)
-    for each in (screen, Reporter()):
-        each.start(20.0)
-        clock.time += 100.0
-        each.update(1.0, 0.1, "rock")
-        each.message("hello")
-        each.finish()
-    assert stream.getvalue() == ""
