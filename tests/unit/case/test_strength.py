@@ -51,15 +51,6 @@ def test_it_replaces_a_factor_and_is_replaced_by_one(record):
         record.with_values({PEAK: 4.5, "motion.scale": 2.0})
 
 
-def test_a_record_and_its_kind_may_be_set_together(record):
-    base = load_case("seed_stack_plateau")
-    moved = base.from_origin(record._origin).with_values(
-        {"motion.kind": "table", "motion.file": record.motion.file, "motion.unit": "m/s2", PEAK: 2.0}
-    )
-    assert moved.motion.scale_to_m_s2 == 2.0
-    assert base.with_values({PEAK: 2.0}).motion.peak_acceleration_m_s2 == 2.0
-
-
 @pytest.mark.parametrize(
     ("changes", "values", "reason"),
     [

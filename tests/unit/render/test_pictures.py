@@ -154,24 +154,8 @@ def test_a_damaged_frame_leaves_no_half_written_movie(run, renders, tmp_path):
     assert not list(tmp_path.glob("*film*"))
 
 
-class TestCommands:
-    """Through `main`: one message, exit code 2, no traceback, and no rendering in this process."""
-
-    def refused(self, capsys, *arguments):
-        assert command_line.main([str(word) for word in arguments]) == 2
-        message = capsys.readouterr().err
-        assert message.count("\n") == 1
-        return message
-
-    def test_without_opengl_they_name_the_packages(self, run, monkeypatch, capsys, tmp_path):
-        monkeypatch.setattr(rendering, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-        for name in ("picture", "movie"):
-            message = self.refused(capsys, name, run.folder)
-            assert "signal 11" in message
-            assert "apt-get install -y libegl1 libgl1-mesa-dri" in message
-
-    def test_the_file_is_named(self, run, renders, monkeypatch, capsys, tmp_path):
-        target = ["--to", str(tmp_path / "a.png")]
-        assert command_line.main(["picture", str(run.folder), "--time", "0.5", *target]) == 0
-        assert capsys.readouterr().out.strip() == str(tmp_path / "a.png")
-        assert (tmp_path / "a.png").is_file()
+def test_the_file_of_a_picture_is_named(run, renders, capsys, tmp_path):
+    target = ["--to", str(tmp_path / "a.png")]
+    assert command_line.main(["picture", str(run.folder), "--time", "0.5", *target]) == 0
+    assert capsys.readouterr().out.strip() == str(tmp_path / "a.png")
+    assert (tmp_path / "a.png").is_file()

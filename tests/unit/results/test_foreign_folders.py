@@ -106,7 +106,7 @@ class TestWriting:
                 write()
 
     @pytest.mark.parametrize("subfolder", ["figures", "fields"])
-    def test_a_subfolder_is_no_link(self, folder, tmp_path, subfolder, capsys):
+    def test_a_subfolder_is_no_link(self, folder, tmp_path, subfolder):
         pictures = tmp_path / "pictures"
         pictures.mkdir()
         mine = [pictures / "a.svg", pictures / "frame_00001.vtu"]
@@ -123,10 +123,6 @@ class TestWriting:
                 region=np.zeros(1),
                 box=[],
             )
-        (tmp_path / "case.toml").write_text(CASE)
-        (folder / "run.json").write_text("{}")
-        assert main(["run", str(tmp_path / "case.toml"), "--out", str(folder), "--force", "-q"]) == 2
-        assert LINKED in capsys.readouterr().err
         assert all(path.read_text() == "mine" for path in mine) and len(os.listdir(pictures)) == 2
 
     def test_copies_follow_no_link(self, folder, tmp_path):

@@ -9,12 +9,10 @@ from fem.case.case import load_case
 from fem.results.outcome import Ending
 from fem.study.axes import Axis
 from fem.study.design import Perturbation
-from fem.study.sure import around, band_width, near_cells
+from fem.study.sure import band_width, near_cells
 
 X = Axis(key="contact.mu_static", values=(0.1, 0.2, 0.3, 0.4, 0.5), scale="linear")
 Y = Axis(key="motion.peak_acceleration_m_s2", values=(1.0, 2.0, 4.0, 8.0), scale="log", unit="m/s2")
-
-WORDS = Axis(key="solver.model", values=("rigid", "reduced"))
 
 
 def members(case):
@@ -26,14 +24,6 @@ def test_cells_beside_another_kind_are_near_diagonals_too_and_a_close_call_is_by
     kind[0, 0], ratio[3, 2] = Ending.OVERTURNED, 0.6
     near = near_cells((X, Y), kind, ratio, 0.5)
     assert sorted(map(tuple, np.argwhere(near))) == [(0, 0), (0, 1), (1, 0), (1, 1), (3, 2)]
-
-
-def test_words_have_no_neighbours():
-    kind = np.full((2, 5), Ending.STANDING)
-    kind[0, 0] = Ending.OVERTURNED
-    near = near_cells((WORDS, X), kind, np.zeros((2, 5)), 0.5)
-    assert np.argwhere(near).tolist() == [[0, 0], [0, 1]]
-    assert not around((WORDS, X), near)[1].any()
 
 
 def test_the_band_is_as_wide_as_its_stretch_of_cells():

@@ -27,14 +27,6 @@ def test_the_last_axis_is_the_fastest(sweep_of):
     assert sweep.point(5) == {"motion.angular_frequency_rad_s": 4.0, "contact.mu_static": 0.3}
 
 
-def test_log_ranges_keep_their_ratio_and_their_ends(sweep_of):
-    sweep = sweep_of(
-        '[axes]\n"motion.peak_acceleration_m_s2" = { from = 1.0, to = 8.0, count = 4, scale = "log" }\n'
-    )
-    assert sweep.axes[0].values == pytest.approx((1.0, 2.0, 4.0, 8.0))
-    assert sweep.axes[0].values[0] == 1.0 and sweep.axes[0].values[-1] == 8.0
-
-
 def test_a_cell_is_the_base_with_its_keys_set(sweep_of):
     # The light way of making cases against the long one; an axis on a peak acceleration replaces the amplitude.
     sweep = sweep_of(
