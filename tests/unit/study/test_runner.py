@@ -1,6 +1,5 @@
 """A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
 
-import os
 import signal
 import sys
 
@@ -17,7 +16,7 @@ from fem.run.simulation import simulate
 from fem.run.verdict import verdict_of
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
-from fem.study.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
+from fem.study.workers import LocalWorkers, WorkersLostError, hand_out
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]
 CHANGES = (
@@ -91,20 +90,6 @@ def test_what_ends_the_group_does_not_meet_a_worker_that_is_starting():
         found = list(hand_out(range(2), held_back, workers_of("full", 2), at_a_time=1))
     assert all(held >= {signal.SIGINT, signal.SIGTERM} for _, held in found)
     assert held_back([]).isdisjoint({signal.SIGINT, signal.SIGTERM})
-
-
-@pytest.mark.slow
-def test_many_cases_are_shared_by_this_process_and_others():
-    with LocalWorkers(2) as workers_of:
-        pools = workers_of("rigid", WORTH_PROCESSES["rigid"])
-        found = list(hand_out(range(200), who_works, pools, at_a_time=1))
-        assert sorted(item for chunk, _ in found for item in chunk) == list(range(200))
-        workers = {worker for _, worker in found}
-        assert os.getpid() in workers
-        assert len(workers) == 2
-        assert [pool.given for pool in pools] == [0, 0]
-        later = workers_of("rigid", 2)  # processes that run already are used for few cases, too
-        assert {pool.executor for pool in later} == {pool.executor for pool in pools}
 
 
 def test_a_stop_ends_the_handing_out():
