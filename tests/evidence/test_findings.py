@@ -5,7 +5,7 @@ import math
 
 import pytest
 from evidence.findings import Convergence, analytic, at_least, at_most, equal, prediction
-from evidence.pages import page_of, verification_lines
+from evidence.pages import verification_lines
 from verification import suite
 from verification.checks import check
 from verification.suite import CHECKS as ALL
@@ -93,16 +93,6 @@ def test_a_check_that_cannot_be_computed_is_a_finding_that_fails(small_suite):
     lines = verification_lines(document)
     assert sum("FAIL" in line for line in lines) == 3 and lines[-1].endswith("2 FAIL")
     assert verification_lines(computed(quick=True))[-1].endswith("all pass")
-
-
-def test_the_page_needs_nothing_from_elsewhere(small_suite):
-    text = page_of("verify", computed(), {})
-    assert text.count("<svg") == 1
-    assert "a quantity &lt;b&gt; [m]" in text
-    assert "src=" not in text
-    assert text.count("<link") == text.count('<link rel="icon" href="data:,">') == 1
-    assert "default-src 'none'" in text
-    assert "<script" not in text
 
 
 def test_the_manual_states_every_requirement_with_its_result(small_suite, tmp_path):

@@ -12,7 +12,7 @@ from fem.case.tables.boxes import MICROSLIP
 from fem.case.tables.input_ranges import UnknownNumber
 from fem.case.tables.links import ROWS
 from fem.case.tables.unknown_inputs import INPUTS, UNKNOWN, ranges_of
-from fem.case.uncertainty import all_changes, as_changed, latin_hypercube, stiff_floor
+from fem.case.uncertainty import all_changes, as_changed, latin_hypercube
 from fem.model.geometry import build_container
 
 PENALTY = 1e9
@@ -130,12 +130,6 @@ def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
     floor = [one.contact.mu_kinetic for one in drawn]
     assert abs(np.corrcoef(floor, share)[0, 1]) < 0.2
     assert len({one.joint_friction["weakening_m"] / one.contact.weakening_m for one in drawn}) > 16
-
-
-def test_a_stiff_floor_is_thirty_times_as_stiff():
-    assert stiff_floor(named_case("harmonic"), PENALTY).values == {
-        "contact.normal_penalty_Pa_m": 30.0 * PENALTY
-    }
 
 
 @pytest.mark.parametrize("width", [0.4, 1.41, 1.45, 2.5])

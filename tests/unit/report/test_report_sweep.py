@@ -1,4 +1,4 @@
-"""The report of a sweep: every cell with its values and the command that runs it; unfinished sweeps and refusals."""
+"""The report of a sweep: every cell with its values and the command that runs it; that of a list: equal rows as one."""
 
 import base64
 import re
@@ -9,7 +9,7 @@ import pytest
 from study_folders import sweep_folder
 
 from fem.report import sweep_map
-from fem.report.study_page import sweep_report
+from fem.report.study_page import folded, sweep_report
 from fem.report.sweep_map import map_data
 from fem.results.errors import FolderError
 from fem.study.sweep_table import open_sweep
@@ -67,3 +67,17 @@ def test_more_cells_than_a_page_can_carry_are_refused_with_a_way_out(folder, mon
     monkeypatch.setattr(sweep_map, "MOST_BYTES", 50)
     with pytest.raises(FolderError, match="6 cells are more than one page can carry"):
         sweep_report(folder)
+
+
+def test_equal_containers_are_one_row_and_those_that_rest_stand_apart():
+    outcomes = ("overturned", "rest", "rest", "rest", "rest")
+    ranked = [
+        {"name": f"C{k}", "command": f"run {k % 4}", "tag": "", "line": k + 2, "count": 1, "outcome": outcome}
+        for k, outcome in enumerate(outcomes)
+    ]
+    ranked[4]["command"] = "run 3"
+    moving, resting = folded(ranked)
+    assert [row["name"] for row in moving] == ["C0"]
+    assert [row["name"] for row in resting] == ["C1", "C2", "C3 and 1 alike"]
+    assert resting[-1]["line"] == "5, 6" and resting[-1]["count"] == 2
+    assert folded(ranked[:3]) == (ranked[:3], []) and folded(ranked[1:4]) == (ranked[1:4], [])

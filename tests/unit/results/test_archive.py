@@ -74,14 +74,6 @@ def test_a_checkpoint_of_another_case_or_version_is_refused(path, asked, words):
         read(path, **asked)
 
 
-def test_a_missing_checkpoint_and_another_format_are_refused(path, tmp_path):
-    with pytest.raises(CheckpointError, match="cannot be read"):
-        read(tmp_path / "none.npz")
-    write_archive(path, {**OWN, "format": FORMAT + 1}, {})
-    with pytest.raises(CheckpointError, match="another version"):
-        read(path)
-
-
 def forged(path, header, content, compression):
     """An archive whose checksum is right, with one array that is not what it seems."""
     text = f"{header!r}".encode().ljust(118) + b"\n"

@@ -92,20 +92,6 @@ def test_meshio_reads_frames_whose_arrays_have_any_length(tmp_path):
         assert read.frame(number).contact_pressure == pytest.approx(frame["contact_pressure"], rel=1e-6)
 
 
-def test_series_is_valid_after_every_frame(tmp_path):
-    out = writer(tmp_path)
-    assert len(open_fields(tmp_path)) == 0
-    for i in range(4):
-        out.write(at(0.1 * i, **fields()))
-        series = open_fields(tmp_path)
-        assert series.times.tolist() == [0.1 * j for j in range(i + 1)]
-        assert all(file.is_file() for file in series.files)
-    assert sorted(p.name for p in tmp_path.iterdir()) == [
-        *(f"frame_0000{i}.vtu" for i in range(4)),
-        "run.pvd",
-    ]
-
-
 def test_a_resumed_run_keeps_the_frames_up_to_there_and_no_others(tmp_path):
     out = writer(tmp_path)
     for i in range(4):

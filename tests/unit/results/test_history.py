@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from contact.stepping.state import row_names
 from fem.case.columns import ALWAYS, GROUPS, JOINTS, MODE, history_columns
-from fem.results.history import History, HistoryWriter, add_analytic_rotation, read_history
+from fem.results.history import HistoryWriter, add_analytic_rotation, read_history
 
 COLUMNS = ALWAYS.names((0,))
 NUMBERS = len(COLUMNS) - 1
@@ -171,22 +171,3 @@ def test_files_that_are_no_history_are_refused(tmp_path, text, words):
     (tmp_path / "h.csv").write_text(text)
     with pytest.raises(ValueError, match=words):
         read_history(tmp_path / "h.csv")
-
-
-class TestInPython:
-    """A history is a mapping of its columns."""
-
-    HISTORY = History(
-        numbers=("time_s", "joint_1_moment_Nm", "box_2_rotation_rad"),
-        samples=np.array([[0.0, 1.0, 2.0], [0.1, 3.0, 4.0]]),
-        modes=("rest", "rock"),
-    )
-
-    def test_it_is_a_table_of_columns_with_units(self):
-        table = dict(self.HISTORY)
-        assert list(table) == [*self.HISTORY.numbers, "mode"]
-        assert table["joint_1_moment_Nm"].tolist() == [1.0, 3.0] and table["mode"].tolist() == [
-            "rest",
-            "rock",
-        ]
-        assert self.HISTORY.units == {"time_s": "s", "joint_1_moment_Nm": "Nm", "box_2_rotation_rad": "rad"}

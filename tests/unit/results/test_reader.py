@@ -114,9 +114,3 @@ def test_opening_loads_neither_the_solver_nor_pyvista(folder):
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
     )
     assert result.stdout.strip() == ""
-
-
-@pytest.mark.parametrize("time", [float("nan"), -1.0, 1e9])
-def test_a_time_without_a_frame_is_refused(folder, time):
-    with pytest.raises(FolderError, match="frames lie from 0 to"):
-        fem.open_run(folder).frame(time)

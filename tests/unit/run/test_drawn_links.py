@@ -5,8 +5,6 @@ import pytest
 import pyvista
 
 import fem
-from fem.model.model import build_model
-from fem.report.animation import animation_of, player_data
 from fem.results.fields import STOP, TIE
 from fem.run.drawn_links import drawn_links
 from fem.run.run import RunOptions, run_case
@@ -94,14 +92,3 @@ def test_a_tie_runs_from_its_point_to_the_floor_until_it_breaks(run):
             assert at[:2, 1] == pytest.approx(0.0, abs=1e-6)
         else:
             assert np.ptp(at, axis=0) == pytest.approx((0.0, 0.0), abs=1e-6)
-
-
-def test_the_animation_shows_them(run):
-    model = build_model(run.case)
-    links = drawn_links(run.case, [np.inf] * 3 + [run.typed_result.ties[0].broken_at_s, np.inf])
-    shown = animation_of(model, run.fields, links)
-    data = player_data(shown, run.history, model=model)
-    assert [one["height"] for one in data["links"]] == [0.3, 1.5, 2.0, 3.5] and data["row"]
-    assert data["links"][2]["until"] == run.typed_result.ties[0].broken_at_s
-    held = shown.points[data["links"][2]["node"]] + shown.centroid[0]
-    assert held == pytest.approx((-0.55, 2.0), abs=1e-9)

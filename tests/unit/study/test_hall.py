@@ -254,16 +254,6 @@ def test_a_record_with_the_name_of_a_result_is_refused_before_anything_is_writte
     assert not (tmp_path / "out").exists()
 
 
-def test_a_result_may_be_the_list_of_the_next_hall(tmp_path, base):
-    _hall_of(tmp_path, LIST)
-    again = read_hall(tmp_path / "out" / "hall.csv")
-    assert tuple(again.meanings) == tuple(LIST.splitlines()[0].split(","))
-    assert [row.name for row in again.rows] == ["A", "=B", "bad", "C", "D"]
-    run_hall(again, load_case(base), tmp_path / "next", checks="none")
-    first, second = ((tmp_path / name / "hall.csv").read_bytes() for name in ("out", "next"))
-    assert first == second
-
-
 def test_the_page_of_a_finished_list_is_left_alone_and_a_missing_one_is_made(tmp_path, base):
     command = ["batch", str(listed(tmp_path, LIST)), "--case", "base.toml", "--margins", "none", "-q"]
     page = tmp_path / "outputs" / "hall" / "report.html"

@@ -112,21 +112,9 @@ def test_a_sweep_killed_twenty_times_gives_the_same_table(tmp_path, monkeypatch,
     capsys.readouterr()
 
 
-@pytest.mark.parametrize(
-    ("derived", "words"),
-    [
-        (
-            ('"0.5 * contact.mu_static"', '"0.5 - 0.2 * abs(motion.angular_frequency_rad_s - 4)"'),
-            "mu_kinetic must be at most mu_static",
-        ),
-        (
-            ("[derived]", '[derived]\n"container.depth_m" = "1 / (motion.angular_frequency_rad_s - 4)^2"'),
-            "has no value: it divides by zero",
-        ),
-    ],
-)
-def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path, derived, words):
-    # At 4 rad/s the expression is too large for a friction, or has no value; the ends of the range are fine.
+def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path):
+    # At 4 rad/s the expression has no value; the ends of the range are fine.
+    derived = "[derived]", '[derived]\n"container.depth_m" = "1 / (motion.angular_frequency_rad_s - 4)^2"'
     path = tmp_path / "bad.toml"
     few = SMALL.replace("count = 2", "count = 3").replace("count = 5", "count = 2")
     path.write_text(few.replace(*derived), encoding="utf-8")
@@ -135,7 +123,7 @@ def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path, derived, words):
     middle = table["motion.angular_frequency_rad_s"] == 4.0
     assert np.array_equal(table.outcome == "failed", middle)
     assert np.all(table["outcome"][middle] == "") and np.all(table["unsure"][middle] == 1.0)
-    assert all(words in reason for reason in table["reason"][middle])
+    assert all("it divides by zero" in reason for reason in table["reason"][middle])
 
 
 def test_a_million_cells_need_force_and_name_time_and_disk(tmp_path):
