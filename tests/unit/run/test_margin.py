@@ -65,6 +65,8 @@ def test_islands_are_found():
 
 
 def test_the_margin_does_not_depend_on_the_cores_and_what_governs_is_a_draw_that_overturns(monkeypatch):
+    for name in ("OWN_S", "DRAWN_S"):
+        monkeypatch.setattr(search, name, 0.2)
     monkeypatch.setattr(changed_runs, "cores", lambda: 2)
     run = computed("uncertainty.draws=4", "solver.duration_s=6", band=None)
     margin, own = run.verdict.margin, run.case
