@@ -103,7 +103,7 @@ def docs(room: str = "", /) -> None:
     """
     places = found()
     if room == START:
-        say(str(metadata.metadata("unanchored").get_payload()))
+        say(str(metadata.metadata("unanchored").json["description"]))
     elif not room:
         say(f"{START:<12}what the program answers, and the first five minutes")
         for name, path in places.items():
