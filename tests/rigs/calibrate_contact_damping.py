@@ -18,12 +18,12 @@ import sys
 from itertools import product
 from pathlib import Path
 
+from runs import RunFailedError, finish
+
 from contact.interface.penalty import contact_frequency
 from fem.case.case import Case, read_case
 from fem.model.container import Container, discretise
-from fem.model.model import Model, build_model
-from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
+from fem.model.model import build_model
 
 WIDTH = 1.1
 HEIGHTS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0)  #: over the width
@@ -78,21 +78,17 @@ def case_of(kind: str, foot: float, slenderness: float, model: str) -> Case:
     return CASE.with_values(values)
 
 
-def restitution(model: Model) -> float | None:
-    """Of the first impact by the peaks around it; None if the run fails its audit."""
-    if simulate(model, Recorder(model)).status != "completed":
-        return None
-    value = float(model.run.track[0].restitution)
-    return value if math.isfinite(value) else None
-
-
-def on_floor(case: Case, container: Container, damping_ratio: float, penalty_factor: float = 1.0) -> Model:
-    """The block on a contact of that damping ratio and stiffness."""
+def measured(case: Case, container: Container, damping_ratio: float, stiffer: float = 1.0) -> str:
+    """Restitution of the first impact by the peaks around it; empty where a run fails its audit."""
     model = build_model(case.with_values({"contact.damping_ratio": damping_ratio}), container)
-    if penalty_factor == 1.0:
-        return model
-    stiffer = {"contact.normal_penalty_Pa_m": penalty_factor * model.penalty}
-    return build_model(model.case.with_values(stiffer), container)
+    if stiffer != 1.0:
+        penalty = {"contact.normal_penalty_Pa_m": stiffer * model.penalty}
+        model = build_model(model.case.with_values(penalty), container)
+    try:
+        value = float(finish(model).track.restitution)
+    except RunFailedError:
+        return ""
+    return f"{value:.4f}" if math.isfinite(value) else ""
 
 
 def stiff_solid(kind: str, foot: float, slenderness: float) -> tuple[Case, Container, float]:
@@ -112,26 +108,21 @@ def rows_of(kind: str, foot: float, slenderness: float) -> list[dict[str, str]]:
     rigid_case = case_of(kind, foot, slenderness, "rigid")
     rigid = discretise(rigid_case)
     solid_case, solid, ratio = stiff_solid(kind, foot, slenderness)
-    rows = []
-    for damping_ratio in DAMPING_RATIOS:
-        model = on_floor(rigid_case, rigid, damping_ratio)
-        values = {
-            "housner": model.static.housner_restitution,
-            "rigid": restitution(model),
-            "rigid_stiffer_contact": restitution(on_floor(rigid_case, rigid, damping_ratio, STIFFER)),
-            "solid": restitution(on_floor(solid_case, solid, damping_ratio)),
+    housner = build_model(rigid_case, rigid).static.housner_restitution
+    return [
+        {
+            "support": kind,
+            "foot_over_width": f"{foot:g}",
+            "height_over_width": f"{slenderness:g}",
+            "contact_damping_ratio": f"{damping_ratio:g}",
+            "housner": f"{housner:.4f}",
+            "rigid": measured(rigid_case, rigid, damping_ratio),
+            "rigid_stiffer_contact": measured(rigid_case, rigid, damping_ratio, STIFFER),
+            "solid": measured(solid_case, solid, damping_ratio),
+            "solid_frequency_ratio": f"{ratio:.1f}",
         }
-        rows.append(
-            {
-                "support": kind,
-                "foot_over_width": f"{foot:g}",
-                "height_over_width": f"{slenderness:g}",
-                "contact_damping_ratio": f"{damping_ratio:g}",
-                **{name: "" if value is None else f"{value:.4f}" for name, value in values.items()},
-                "solid_frequency_ratio": f"{ratio:.1f}",
-            }
-        )
-    return rows
+        for damping_ratio in DAMPING_RATIOS
+    ]
 
 
 def main() -> int:
