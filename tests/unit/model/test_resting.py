@@ -19,12 +19,13 @@ BOX = {
 }
 
 
-def shaken(coda: float, **keys: object) -> Case:
-    """A box under a strong half-cycle and 6 s of shaking at `coda` of what lifts its side."""
+def shaken(coda: float, again: float = 0.0, **keys: object) -> Case:
+    """A box under a strong half-cycle, 6 s of shaking at `coda` and a half-cycle at `again` of what lifts its side."""
     time = np.arange(0.0, 8.0, STEP)
     lifts = 9.81 * 0.5
     acceleration = 1.5 * lifts * np.sin(np.pi * time / 0.5) * (time < 0.5)
     acceleration += coda * lifts * np.sin(2.0 * np.pi * time) * (time > 1.0) * (time < 7.0)
+    acceleration -= again * lifts * np.sin(np.pi * (time - 6.0) / 0.5) * (time > 6.0) * (time < 6.5)
     return (
         case_from(BOX)
         .with_motion(time, acceleration)
@@ -54,8 +55,10 @@ def test_a_run_that_stops_when_still_finds_what_a_run_to_the_end_finds():
     assert brief[0] < 6.0 < 7.9 < whole[0]
 
 
-@pytest.mark.parametrize(("coda", "keys"), [(0.95, {}), (0.8, {"solver.model": "reduced"})])
-def test_it_goes_on_where_the_rest_of_the_record_might_move_it(coda, keys):
+@pytest.mark.parametrize(
+    ("coda", "again", "keys"), [(0.95, 0.0, {}), (0.8, 0.0, {"solver.model": "reduced"}), (0.0, 1.7, {})]
+)
+def test_it_goes_on_where_the_rest_of_the_record_might_move_it(coda, again, keys):
     """Above 0.9 of what lifts a side, and with an elastic container, which answers more than the floor moves."""
-    last, *_ = ended(shaken(coda, stop_when_still=True).with_values(keys))
+    last, *_ = ended(shaken(coda, again, stop_when_still=True).with_values(keys))
     assert last > 6.5
