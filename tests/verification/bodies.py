@@ -80,7 +80,7 @@ def free_run(
     caps: FloatArray | None = None,
     growth: float = 0.0,
     speed: float = 0.0,
-    until: float = math.inf,
+    ends: FloatArray | float = math.inf,
 ) -> Flight:
     """Put a body into the stepper, every step of one size.
 
@@ -94,7 +94,7 @@ def free_run(
         caps: (n,) at which they crush the floor [N]; None: never.
         growth: of these with the indentation, over the cap [1/m].
         speed: upward velocity of a modal body at t = 0 [m/s].
-        until: an instant at which a step ends [s].
+        ends: instants at which a step must end [s].
     """
     if isinstance(body, FullBody):
         coordinates, points, (x, z) = body.coordinates, len(body.base), body.centroid
@@ -130,7 +130,7 @@ def free_run(
             cap_growth=np.full(points, growth),
         ),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
-        breaks=np.full(1, until),
+        breaks=np.atleast_1d(ends),
         control=with_steps_of(build_model(STACK), step).run.problem.control._replace(
             reference_energy=1.0,
             stop_when_overturned=False,

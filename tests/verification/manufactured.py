@@ -120,7 +120,7 @@ class DrivenBody(FullBody):
 
     def fly(self, scheme: Scheme, step: float, end: float) -> Flight:
         """Step the body along its motion to `end` [s]."""
-        self._flight = flight = free_run(self, step=step, scheme=scheme, until=end)
+        self._flight = flight = free_run(self, step=step, scheme=scheme, ends=end)
         state = flight.state
         position, velocity, acceleration = self.motion(0.0)
         state.position[:], state.velocity[:] = position.ravel(), velocity.ravel()

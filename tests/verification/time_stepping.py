@@ -202,10 +202,17 @@ def oscillator(omega: float, damping_ratio: float) -> ModalBody:
     )
 
 
-def oscillator_error(scheme: Scheme, step: float, end: float) -> float:
-    """Error of position and velocity over the amplitude after a time, from an amplitude of one."""
+def oscillator_error(scheme: Scheme, step: float, end: float, ends: FloatArray | None = None) -> float:
+    """Error of position and velocity over the amplitude after a time, from an amplitude of one.
+
+    `ends` are instants at which a step must end [s]; None: the end alone.
+    """
     flight = free_run(
-        oscillator(OMEGA, DAMPING), step=step, scheme=scheme, modal_position=1.0, until=end
+        oscillator(OMEGA, DAMPING),
+        step=step,
+        scheme=scheme,
+        modal_position=1.0,
+        ends=end if ends is None else ends,
     ).advance(end)
     t, rate, decay = flight.time, OMEGA * math.sqrt(1.0 - DAMPING**2), DAMPING * OMEGA
     envelope = math.exp(-decay * t)

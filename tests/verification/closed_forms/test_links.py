@@ -1,4 +1,4 @@
-"""Stops and ties: restitution, impulse and energy of hits, work balance of straps, and what must not change anything.
+"""Stops and ties: restitution, impulse and energy of hits, work balance of straps.
 
 The references are closed forms and a quadrature; none of them steps.
 """

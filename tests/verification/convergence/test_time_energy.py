@@ -1,4 +1,4 @@
-"""The energy ledger closes to second order of the step where nothing switches, and audits what does."""
+"""The energy ledger of what slides, rings and rocks; its order where nothing switches is a row of `verify`."""
 
 import numpy as np
 from block_on_floor import GRAVITY, Block, Rig, rig
