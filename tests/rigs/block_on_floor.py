@@ -43,8 +43,6 @@ class Block:
     damping_ratio: float = 2.0  #: c/(2 sqrt(k m)), the whole mass on one corner
     mu_static: float = 0.4
     mu_kinetic: float = 0.4
-    cap: float = math.inf  #: of the normal force of a corner [N]
-    cap_growth: float = 0.0  #: with the indentation, over the cap [1/m]
     impact_share: float = 1.0  #: of the angular momentum that an exchange of the pivot leaves
 
     @property
@@ -81,8 +79,6 @@ class Block:
         return contact_of(
             np.full(2, 0.5 * self.base_stiffness),
             force_scale=self.mass * GRAVITY,
-            cap=np.full(2, self.cap),
-            cap_growth=np.full(2, self.cap_growth),
             relaxation_time=np.full(2, self.relaxation_time),
             mu_static=np.full(2, self.mu_static),
             mu_kinetic=np.full(2, self.mu_kinetic),

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from block_on_floor import GRAVITY, Block, Rig, rig
+from block_on_floor import GRAVITY, Block, rig
 from closed_forms_rocking import damped_drop_restitution
 
 from contact.motion.base_motion import PulseMotion
@@ -13,41 +13,16 @@ from contact.motion.base_motion import PulseMotion
 SPEED = 0.5  #: of the approach [m/s]
 
 
-def falling(block: Block, gap: float, **options) -> Rig:
-    """Above the floor by `gap` [m], coming down."""
-    centre = (0.0, 0.5 * block.height + gap)
-    stance = replace(
-        Block(height=block.height).standing(), centre=centre, velocity=(0.0, -SPEED), force=np.zeros((2, 2))
-    )
-    return rig(block, stance=stance, **options)
-
-
 @pytest.mark.parametrize("heave_ratio", [0.05, 0.1, 0.2, 0.5])
 def test_the_steps_of_the_control_resolve_a_damped_landing(heave_ratio):
     # The whole mass on one corner has sqrt 2 less than the heave ratio: k is then half, c is half.
     ratio = heave_ratio / math.sqrt(2.0)
     block = Block(height=1.0, mass=2500.0, gravity=0.0, bounce_frequency=20.0, damping_ratio=ratio)
-    state = falling(block, 1e-3).advance(0.1).run.old
+    falling = {"centre": (0.0, 0.501), "velocity": (0.0, -SPEED), "force": np.zeros((2, 2))}
+    state = rig(block, stance=replace(Block(height=1.0).standing(), **falling)).advance(0.1).run.old
     assert (state.point[:, 1] > 0.0).all()  # it has left the floor
     assert abs(state.position[2]) < 1e-12
     assert state.velocity[1] / SPEED == pytest.approx(damped_drop_restitution(heave_ratio), abs=0.01)
-
-
-@pytest.mark.parametrize("growth", [0.0, 200.0])
-def test_a_landing_crushes_until_a_cap_that_grows_has_taken_its_energy(growth):
-    # m v^2/2 = 2 F d (1 + g d/2) for the two corners; the springs below store 0.2 J of the 312.5
-    block = Block(
-        height=1.0,
-        mass=2500.0,
-        gravity=0.0,
-        bounce_frequency=200.0,
-        damping_ratio=0.3,
-        cap=20e3,
-        cap_growth=growth,
-    )
-    share = 0.25 * block.mass * SPEED**2 / block.cap
-    depth = 2.0 * share / (1.0 + math.sqrt(1.0 + 2.0 * growth * share))
-    assert falling(block, 1e-3).advance(0.2).run.old.crushed == pytest.approx([depth] * 2, rel=0.02)
 
 
 def test_slip_leaves_out_the_elastic_stick():
