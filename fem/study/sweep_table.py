@@ -123,7 +123,7 @@ def open_sweep(folder: Path | str) -> SweepTable:
             )
         return SweepTable(info=info, columns=_columns(info.axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
-        raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None
+        raise FolderError(f"{mark}: damaged, its axes or table are of another sweep ({error})") from None
 
 
 def _columns(
