@@ -1,5 +1,6 @@
 """`list`, `init`, `docs`: what is installed with the program, cases, files to start from, and documents."""
 
+import importlib
 import json
 import tomllib
 from importlib import metadata
@@ -10,9 +11,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.case.case import CaseError, load_case
 from fem.case.files import CASES, COLLECTIONS, COMMANDS, DEFAULT_CASE
-from fem.case.template import case_template
+from fem.case.validation import CaseError
 from fem.cli.console import WIDTH, AsJson
 from fem.results.errors import FolderError
 from fem.runtime.own_files import created
@@ -60,9 +60,11 @@ def init(
         A shipped case, sweep, ensemble or site (see `python -m fem list`); default: a case file with every key.
     """
     of = next((each for each in COLLECTIONS if name in each.names), CASES)
-    text = case_template(load_case()) if name is None else of.text(name)
-    if name is not None and of is CASES:
-        text = _for_another_box(text)
+    if name is None:  # a case loads numpy
+        cases, template = (importlib.import_module(f"fem.case.{module}") for module in ("case", "template"))
+        text = template.case_template(cases.load_case())
+    else:
+        text = _for_another_box(of.text(name)) if of is CASES else of.text(name)
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
         with created(path) as stream:
