@@ -17,7 +17,7 @@ from fem.case.case import Case, load_case
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError, Fields, Frame, open_fields
 from fem.results.history import History, read_history
-from fem.results.kinds import KINDS, RUN, read_result
+from fem.results.kinds import KINDS, RUN, read_result, typed_result
 from fem.results.run_files import RunFiles
 from fem.results.run_result import RunResult, Verdict
 from fem.runtime.arrays import FloatArray
@@ -64,10 +64,7 @@ class OpenedRun:
     @cached_property
     def typed_result(self) -> RunResult:
         """The result as typed data; what the run has not reached is None."""
-        try:
-            return RunResult.from_json(self.result)
-        except ValueError as error:
-            raise FolderError(f"{self.place.result}: {error}; run the case again") from None
+        return typed_result(RunResult, self.result, self.place.result)
 
     @property
     def verdict(self) -> Verdict:

@@ -112,18 +112,6 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
     assert files_of(folder) == files_of(whole[study])
 
 
-@pytest.mark.parametrize("study", [hall])
-def test_rows_that_are_damaged_or_of_no_run_are_computed_again_or_left_out(tmp_path, whole, study):
-    run, folder = study(tmp_path), tmp_path / "out"
-    with pytest.raises(KeyboardInterrupt):
-        run(folder, reporter=Interrupting(1))
-    path = folder / "runs.csv"
-    header, first, second, *others = path.read_text().splitlines()
-    path.write_text("\n".join([header, first, second[: len(second) // 2], "777777" + first, *others, ""]))
-    run(folder, resume=True)
-    assert files_of(folder) == files_of(whole[study])
-
-
 @STUDIES
 def test_a_study_whose_folder_is_removed_ends_in_a_sentence(tmp_path, study, mark, log):
     folder = tmp_path / "out"
