@@ -91,7 +91,7 @@ def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeyp
     require_same(tmp_path / "cut", tmp_path / "whole")
 
 
-@pytest.mark.parametrize("kind", ["reduced, flat base", "full", "aftermath"])
+@pytest.mark.parametrize("kind", ["reduced, flat base", "full"])
 def test_a_run_paused_after_every_step_is_the_run_that_never_pauses(tmp_path, monkeypatch, kind):
     # Where the pauses fall depends on the wall clock; nothing else may.
     name, overrides = CASES[kind]
