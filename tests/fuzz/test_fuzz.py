@@ -23,16 +23,7 @@ def compiled():
 
 
 MANY = int(os.environ.get("FUZZ", "1"))
-COUNTS = {
-    "text": 20,
-    "mesh": 20,
-    "table": 20,
-    "record": 15,
-    "hostile": 5,
-    "case": 15,
-    "option": 8,
-    "folder": 3,
-}
+COUNTS = {"text": 20, "mesh": 20, "table": 20, "record": 15, "hostile": 5, "case": 15, "option": 8}
 
 
 @pytest.mark.parametrize("share", [MANY, pytest.param(3 * MANY, marks=pytest.mark.slow)])

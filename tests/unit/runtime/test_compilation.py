@@ -1,5 +1,6 @@
 """What compiling costs is counted, apart from what is loaded or run; and a long compilation is told beforehand."""
 
+import re
 import time
 
 import numba
@@ -64,4 +65,5 @@ def test_each_stepping_is_told_before_it_is_compiled_and_what_is_left_of_it_but_
         kernel("advance_in_slices", calls=kernel("advance_on_points", calls=kernel("advance")))(1.0)
         kernel("advance")(1.0)
     told = "compiling the stepping of this model, once after installation: half a minute or more"
-    assert said == [told, "compiling the stepping: 2 functions translated, 0 s left", told]
+    assert re.fullmatch(r"compiling the stepping: 2 functions translated, \d+ s left", said.pop(1))
+    assert said == [told, told]
