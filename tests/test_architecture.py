@@ -129,7 +129,7 @@ BUDGET = {
     "runtime": ("fem/runtime", 1_073, 61),
     "records": ("fem/records", 2_645, 72),
     "case": ("fem/case", 5_437, 130),
-    "results": ("fem/results", 2_948, 96),
+    "results": ("fem/results", 2_945, 96),
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 3_962, 120),
@@ -137,9 +137,9 @@ BUDGET = {
     "pages": ("fem/html fem/figures fem/render fem/report", 4_990, 128),
     "study": ("fem/study fem/response", 7_445, 205),
     "site": ("fem/site", 4_756, 123),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_036, 47),
-    "product": ("mesh contact fem", 55_086, 1_632),
-    "tests": ("tests", 38_733, 2_210),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_038, 47),
+    "product": ("mesh contact fem", 55_085, 1_632),
+    "tests": ("tests", 38_592, 2_201),
 }
 
 
