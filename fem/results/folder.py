@@ -22,7 +22,15 @@ from fem.results.json_block import to_json
 from fem.results.kinds import KINDS, ResultKind, read_result
 from fem.results.lock import LOCK_NAME, OWNER_NAME, FolderLock, locked_folder
 from fem.runtime.identity import program_identity, versions
-from fem.runtime.own_files import PART, matching_files, place_in, remove, remove_files, write_atomically
+from fem.runtime.own_files import (
+    PART,
+    matching_files,
+    place_in,
+    remove,
+    remove_files,
+    remove_half_written,
+    write_atomically,
+)
 from fem.runtime.terminal import one_line, say
 
 MOST_LISTED = 20  #: files of a user in a message
@@ -92,6 +100,7 @@ class ResultFolder:
         was_empty = not _names_in(self.path)
         try:
             self.write_result(mark)
+            remove_half_written(self.path, self.kind.own)
             if not (self.resuming if keep is None else keep):
                 self.remove(*self.kind.own)
                 for other in KINDS:  # only where it was told to overwrite what is there

@@ -113,13 +113,20 @@ def remove(path: Path) -> None:
     path.unlink(missing_ok=True)
 
 
-def remove_files(folder: Path, patterns: Iterable[str]) -> None:
-    """Remove files that match these patterns, what a kill left of files, and subfolders that are empty then."""
+def remove_half_written(folder: Path, patterns: Iterable[str]) -> None:
+    """Remove what a kill left of files that match these patterns."""
     parents = {Path(pattern).parent for pattern in patterns}
-    for file in matching_files(folder, [*patterns, *(str(parent / ".part-*") for parent in parents)]):
-        if not file.name.startswith(".part-") or PART.fullmatch(file.name):
+    for file in matching_files(folder, [str(parent / ".part-*") for parent in parents]):
+        if PART.fullmatch(file.name):
             remove(file)
-    for parent in parents - {Path()}:
+
+
+def remove_files(folder: Path, patterns: Iterable[str]) -> None:
+    """Remove files that match these patterns, what a kill left of such, and subfolders that are empty then."""
+    remove_half_written(folder, patterns)
+    for file in matching_files(folder, patterns):
+        remove(file)
+    for parent in {Path(pattern).parent for pattern in patterns} - {Path()}:
         with suppress(OSError):  # it is not empty
             (folder / parent).rmdir()
 

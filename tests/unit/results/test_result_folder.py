@@ -65,6 +65,8 @@ def test_a_finished_result_of_the_same_request_is_not_touched_unless_forced(tmp_
 @pytest.mark.parametrize("status", ["running", "interrupted", "failed"])
 def test_an_unfinished_result_keeps_its_files_only_to_resume(tmp_path, kind, status, resume):
     computed(tmp_path, kind, status)
+    for name in own_files(kind):  # as a kill leaves them
+        (tmp_path / name).with_name(".part-0123456789abcdef").write_text("half")
     with open_result_folder(tmp_path, kind, "ours", resume=resume) as folder:
         assert folder.resuming is resume
         folder.begin(mark(kind), TEXTS)
