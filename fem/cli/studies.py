@@ -24,7 +24,6 @@ from fem.cli.console import (
     print_short,
     whole,
 )
-from fem.results.figures import Place, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE, SITE, SIZE, SWEEP, ResultKind
 from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
@@ -124,7 +123,6 @@ def ensemble(ensemble: str, /, *, flags: StudyFlags = STUDY) -> int:
         answer = _of("study.answers:ensemble_answer")(result)
         return {
             "answers": list(answer.lines()) if answer else [],
-            "curve": _of("study.answers:fragility_lines")(result),
             "falling": _of("study.answers:falling_in_words")(result.limit_slip_m),
             "motions": result.random.get(_of("study.axes:MOTION_FILE"), ()),
         }
@@ -178,7 +176,7 @@ def batch(
             write_atomically(folder / PAGE, report(folder))
         if pdf and result.status == "completed":
             say(print_short(folder, report))
-        return {"key_figures": figures_of(Place.KEY)}
+        return {}
 
     asked: dict[str, Any] = {"motions": motion, "checks": margins, "one_side": one_side, "shown": shown}
     return _ended(HALL, listed.name, flags, "study.hall:run_hall", listed, base, **asked)
@@ -234,8 +232,7 @@ def response(
     )
 
     def shown(result: "ResponseResult", folder: Path) -> dict[str, Any]:
-        lasting, stable = (_of(f"response.lasting:{name}_in_words")(result) for name in ("lasting", "stable"))
-        return {"asked": request, "lasting": lasting, "stable": stable}
+        return {"asked": request, "stable": _of("response.lasting:stable_in_words")(result)}
 
     flags = StudyFlags(out=out, resume=resume, force=force, as_json=as_json, quiet=quiet)
     name, compute = f"{loaded.name}-response", "response.run:run_response"

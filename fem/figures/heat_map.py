@@ -5,7 +5,7 @@ panel is one map; all have the same axes and colours.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -72,14 +72,6 @@ class MapCurve:
     label: str = ""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Look:
-    """The classes of a panel by their words."""
-
-    colours: Mapping[str, str]
-    hatches: Mapping[str, str] = field(default_factory=dict)  #: over the colour, for print without colours
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Panel:
     """One map; arrays have a row for each value of y and a column for each of x."""
@@ -88,7 +80,9 @@ class Panel:
     title: str = ""
     overturned: BoolArray | None = None  #: cells enclosed by a line; black where colours are a scale
     unsure: BoolArray | None = None  #: cells that are hatched
-    look: "Look | None" = None  #: colours of its own, to whose places `values` refer
+    look: Mapping[str, str] | None = (
+        None  #: colours of its own by their words, to whose places `values` refer
+    )
     texts: Sequence[Sequence[str]] | None = None  #: within the cells
     curves: Sequence[MapCurve] = ()
 
@@ -115,7 +109,7 @@ def draw_heat_map(
         bar: label of the colour scale.
         columns: of panels, at most.
     """
-    shared = Look(colours=colours) if isinstance(colours, Mapping) else None
+    shared = colours if isinstance(colours, Mapping) and colours else None
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     height = {1: 4.6, 2: 3.4 * rows}.get(columns, 2.6 * rows)
@@ -127,8 +121,8 @@ def draw_heat_map(
         for k, (axes, panel) in enumerate(zip(subplots, panels, strict=False)):
             look = panel.look or shared
             scale = ScalarMappable(
-                cmap=ListedColormap(list(look.colours.values())) if look else colours,  # type: ignore[arg-type]
-                norm=Normalize(-0.5, len(look.colours) - 0.5) if look else norm,
+                cmap=ListedColormap(list(look.values())) if look else colours,  # type: ignore[arg-type]
+                norm=Normalize(-0.5, len(look) - 0.5) if look else norm,
             )
             _fill_cells(axes, scale.to_rgba(np.ma.masked_invalid(panel.values)))
             _draw_over(axes, x, y, panel, look)
@@ -168,12 +162,12 @@ def value_label(value: Any) -> str:
     return str(value) if isinstance(value, bool | str) else rounded(float(value))
 
 
-def _classes(panels: Sequence[Panel], look: Look) -> list[Any]:
+def _classes(panels: Sequence[Panel], look: Mapping[str, str]) -> list[Any]:
     """A patch for every class that occurs."""
     seen = {int(value) for panel in panels for value in np.unique(panel.values)}
     return [
-        Patch(facecolor=colour, edgecolor=GREY, label=word, hatch=look.hatches.get(word))
-        for k, (word, colour) in enumerate(look.colours.items())
+        Patch(facecolor=colour, edgecolor=GREY, label=word)
+        for k, (word, colour) in enumerate(look.items())
         if k in seen and word
     ]
 
@@ -221,7 +215,7 @@ def _draw_marks(axes: Axes, x: MapAxis, y: MapAxis) -> None:
         axes.plot(*np.transpose(crossed), label=label, **look)
 
 
-def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Look | None) -> None:
+def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Mapping[str, str] | None) -> None:
     """What is drawn over the colours of a panel."""
     fallen = np.zeros(panel.values.shape, dtype=bool) if panel.overturned is None else panel.overturned
     if look is None:
@@ -229,9 +223,6 @@ def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Look | No
     if panel.unsure is not None:
         _hatch(axes, panel.unsure & fallen, HATCH, WHITE)
         _hatch(axes, panel.unsure & ~fallen, HATCH, BLACK)
-    if look:
-        for k, word in enumerate(look.colours):
-            _hatch(axes, np.equal(panel.values, k), look.hatches.get(word), BLACK)
     _outline(axes, fallen, WHITE, 1.6)
     _outline(axes, fallen, BLACK, 0.7)
     for row, words in enumerate(panel.texts or ()):
@@ -250,9 +241,9 @@ def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, look: Look | No
         )
 
 
-def _hatch(axes: Axes, cells: BoolArray, hatch: str | None, colour: str) -> None:
+def _hatch(axes: Axes, cells: BoolArray, hatch: str, colour: str) -> None:
     """Hatch cells, all as one path."""
-    if hatch is None or not cells.any():
+    if not cells.any():
         return
     squares = [
         Path.unit_rectangle().transformed(Affine2D().translate(column - 0.5, row - 0.5))

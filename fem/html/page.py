@@ -181,7 +181,7 @@ def _environment(*, autoescape: bool = True) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= FILTERS | {"css_string": _css_string}
+    environment.filters |= FILTERS | {"css_string": _css_string, "form": format}
     return environment
 
 

@@ -17,7 +17,7 @@ from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number
 from fem.model.container import modes_of_a_body
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.sweep_map import counts, map_data, shown_quantities
-from fem.response.lasting import ResponseResult, lasting_in_words, range_of, response_answer, stable_in_words
+from fem.response.lasting import ResponseResult, response_answer, stable_in_words
 from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
@@ -34,7 +34,6 @@ from fem.study.answers import (
     ends_in_words,
     ensemble_answer,
     falling_in_words,
-    fragility_lines,
     interval_in_words,
     ranges_in_words,
     sweep_answer,
@@ -42,7 +41,7 @@ from fem.study.answers import (
 from fem.study.axes import Axis, axis_label, in_words, unit_of_people
 from fem.study.driver import COMPLETED, StudyResult, read_study
 from fem.study.fragility import EnsembleResult
-from fem.study.hall import HallResult
+from fem.study.hall import GRAVEST, HallResult
 from fem.study.sure import CHANGES, change_columns, input_in_words
 from fem.study.sweep_table import SweepTable, open_sweep
 from fem.study.table import read_rows
@@ -62,7 +61,7 @@ PEAK = "peak_acceleration_m_s2"
 #: what is shown of a motion
 MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
 MANY_RESTS = 3  #: containers at rest that are listed apart
-LOOKS = {"overturned": "bad", "invalid": "bad", "failed": "bad"}
+LOOKS = dict.fromkeys((*GRAVEST[:4], "overturned", "invalid"), "bad")
 #: names of the result of a response curve that are options of its command, but for their underscores
 OPTIONS = ("count", "starts", "settle", "observe")
 RENAMED = {"--from": "first_Hz", "--to": "last_Hz", "--hold": "held"}
@@ -95,7 +94,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         data={"sweep": data},
         sentence=answer.sentence if answer else None,
         count=f"{computed} of {info.cells} cells{_unfinished(info)}: {counted}.",
-        figures=_figures(folder, [name for name in info.maps if not name.endswith("_print.svg")], "sweep"),
+        figures=_figures(folder, info.maps, "sweep"),
         deciding=sorted((info.decided_by or {}).items(), key=lambda pair: -pair[1]),
         quantities=shown_quantities(data),
         axis_labels=list(enumerate(labels)),
@@ -199,7 +198,6 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         hash=info.asked,
         sentence=answer.sentence if answer else None,
         count=counted + (f"; share that {fell}: {regions}." if regions else "."),
-        more=[typeset(f"{head}: {line}.") for head, line in fragility_lines(info)],
         answers=_answers_of_ensemble(answer, info) if answer and answer.others else [],
         figures=_figures(folder, ("figures/fragility.svg", "figures/boundary.svg"), "ensemble"),
         outcomes=[
@@ -287,8 +285,6 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         count=f"{len(info.points)} of {2 * asked['count']} points of the sweeps{_unfinished(info)}: {counted}.",
         more=[f"Stable: {stable}."] if stable else [],
         figures=_figures(folder, ("figures/response_curve.svg", "figures/portraits.svg"), "response curve"),
-        lasting=list(lasting_in_words(info)),
-        falls=[(fall, range_of(fall)) for fall in info.drop_outs],
         drive=[
             (f"held {asked['held']}, amplitude", f"{short(asked['held_value'], factor)} {unit}"),
             *(
@@ -328,7 +324,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         count += f" Sure, deciding inputs and margin are those of {which}, each under its governing motion."
     elif info.state == "finished":
         count += " No run was repeated, so sureness and margins are not known."
-    outcomes = ", ".join(f"{word}: {number}" for word, number in info.outcomes.items())
+    outcomes = "; ".join(f"{word}: {number}" for word, number in info.counts.items())
     counted = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
     asked = ["--motion", *info.motions] if info.motions else []
     asked += ["--margins", info.checks] * (info.checks != "weakest") + ["--one-side"] * bool(info.one_side)
@@ -354,7 +350,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         moving=moving,
         resting=resting,
         at_rest=sum(row["count"] for row in resting),
-        looks=[LOOKS.get(row["outcome"] or "failed", "") for row in moving],
+        looks=[LOOKS.get(row.get("does") or row["outcome"], "") for row in moving],
         brief=brief,
         provenance=[("list", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
         again=None if brief else (words, command, [("base.toml", _text(folder / "base.toml"))]),
@@ -565,7 +561,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "of_use": lambda value: value if value == "" else number(value, figures=3),
     "of_point": lambda point, key, default: point.get(key, default),
     "or_absent": lambda text: text or ABSENT,
-    "outcome": lambda row: row["outcome"] or (f"none: {row['reason']}" if row["reason"] else ABSENT),
+    "outcome": lambda row: (row["outcome"] and row.get("does")) or row["outcome"] or f"none: {row['reason']}",
     "share": lambda value: ABSENT if value is None else f"{share(value)} %",
     "target": lambda row: TARGET.format(row["row"], row["name"]),
 }

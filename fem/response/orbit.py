@@ -289,19 +289,16 @@ class LongTime:
     settling: float | None  #: distances over the second half by those over the first; None where periodic
 
 
-def classify(
-    sections: FloatArray, *, resting: bool, tolerance: float = TOLERANCE, largest_period: int = LARGEST_PERIOD
-) -> LongTime:
+def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANCE) -> LongTime:
     """Judge a window of sections.
 
     Args:
         sections: (n, k), n at least 4, scaled to order one.
         resting: nothing moved beyond the limits of a verdict.
         tolerance: of the largest coordinate.
-        largest_period: tried; at most a third of the window.
     """
     count = len(sections)
-    looked_for = min(largest_period, count // REPEATS)
+    looked_for = min(LARGEST_PERIOD, count // REPEATS)
     scatters = np.array([distances(sections, n).max() for n in range(1, looked_for + 1)])
     repeating = np.flatnonzero(scatters <= tolerance)
     n = int(repeating[0]) + 1 if repeating.size else int(np.argmin(scatters)) + 1

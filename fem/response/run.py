@@ -271,9 +271,6 @@ def run_response(
         compute=compute,
         texts={"case.toml": to_toml(request.case)},
         size=table_bytes(points, request.observe * OF_A_PERIOD + portrait + OF_A_POINT),
-        subject="the response curve",
-        way_out="take fewer frequencies or starts",
-        progress=lambda results: "its frequencies so far",
     )
     return run_study(study, folder, **options)
 

@@ -41,7 +41,7 @@ from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
-MOST_RESTITUTION = 1.05
+MOST_RESTITUTION = 1.05  #: of a first impact, above which other energy entered
 STILL = 1e-4  #: change of the rotation over the slenderness angle below which a container does not turn
 
 
@@ -106,12 +106,16 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         late = history["rotation_rad"][time >= time[-1] - 1.0 / model.static.frequency_parameter]
         if late.size > 1 and np.ptp(late) < STILL * model.static.slenderness_angle:
             verdict = replace(verdict, tilt_rad=float(late[-1]))
-    case, width = model.case, model.container.mesh.width
-    # the slip beyond which it has left its place: stated, the gap beside it, or its width
-    place = min([*((row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0), (width, "width")])
+    place, whose = place_of(model.case, model.container.mesh.width)
+    return replace(verdict, place_m=place, place_is=whose)
+
+
+def place_of(case: Case, width: float) -> tuple[float, str]:
+    """The slip beyond which a container has left its place [m], and whose it is: stated, the gap beside, the width."""
     if case.limits is not None and case.limits.slip_m is not None:
-        place = case.limits.slip_m, "limit"
-    return replace(verdict, place_m=place[0], place_is=place[1])
+        return case.limits.slip_m, "limit"
+    gaps = [(row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0]
+    return min([*gaps, (width, "width")])
 
 
 def verdict_from(
@@ -140,7 +144,7 @@ def verdict_from(
     first = min(range(len(joints)), key=lambda k: joints[k].fell_at, default=0)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
     turned = run.old.boxes[:, ROTATION] if boxes else run.old.pose[ROTATION]
-    neighbours = neighbour_results(model)
+    neighbours = _neighbour_results(model)
     followed = end is not None and end > 0.0 and not model.case.output.stop_when_still
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
@@ -190,7 +194,7 @@ def _is_loose(model: Model) -> bool:
     return bool(model.container.boxes) and not model.container.row
 
 
-def neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
+def _neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
     """What each neighbour in a row did, and what happened across the gap before it, in the order of the case."""
     neighbours = []
     for number, neighbour in enumerate(model.case.neighbour, 1):

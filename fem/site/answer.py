@@ -1,9 +1,11 @@
 """The answer to a verification in words: what it rests on, and a sentence for all that speaks against it."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from functools import partial
+from types import MappingProxyType
+from typing import Any
 
+from fem.html.page import text_of
 from fem.results.outcome import Outcome
 from fem.runtime.intervals import binomial_interval, least_draws
 from fem.runtime.units import RATIO, SHORT_MILLIMETRES, DisplayUnit, plain_number
@@ -20,6 +22,7 @@ from fem.site.result import (
     MotionSet,
     RuleRange,
     RunKey,
+    ScanPoint,
     SiteAnswer,
     SiteKey,
     SiteRun,
@@ -29,13 +32,13 @@ from fem.site.rule import (
     CONFIDENCE,
     MEAN_FROM,
     MotionSlips,
-    RuleFound,
     RunGroup,
     first_overturning,
     further_motions,
     governing_run,
     groups_of,
     margin_factor,
+    rule_of,
     rule_range,
     scan_of,
 )
@@ -45,58 +48,60 @@ FULFILLED, NOT_FULFILLED, NOT_SURE = "fulfilled", "not fulfilled", "not sure"
 EARTHQUAKE, WIND = "earthquake", "wind"
 #: probability of overturning under further motions that "fulfilled" bears, and beyond a limit
 MOST_OVERTURNING = 0.05
-ALIKE = "in which the motions differ by 1 in 10 000 at most"
 FIGURES = 2  #: of what rocking makes of a motion; more would not be known
-NO_FURTHER = "No further motions were asked for: how often such motions overturn it is not known."
-AGAIN = "deciding runs, repeated with the elastic model over their unknown inputs,"
+#: a sentence of a verification, by its name and what it is about
+SAYS = partial(text_of, "site_words.txt.j2")
 
 
-class _Reason(NamedTuple):
-    """What speaks against "fulfilled"."""
-
-    answer: str  #: not fulfilled | not sure
-    sentence: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Beside:
-    """What the answer rests on beside the runs of its stages."""
-
-    confirmed: Sequence[ConfirmedRun] = ()  #: the deciding runs, repeated
-    wind: float | None = None  #: utilisation under wind; None: it was not asked for
-    two_directions: TwoDirections | None = None  #: None: not asked for, or not known
-    slips_of_further: MotionSlips = field(default_factory=dict)  #: empty: not asked for, or not known
-    in_plane_only: str = ""  #: why the slip in two directions, which was asked for, is not known, in words
-    still: int = 0  #: runs that the rigid bound made superfluous
-    moves_at: float | None = None  #: factor on the motions at which a rigid body first uplifts or slips
-    left_out: str = ""  #: stages that were not asked for, in words
+#: what speaks against "fulfilled": not fulfilled | not sure, and a sentence
+Reason = tuple[str, str]
 
 
 def answer_of(
-    request: SiteRequest, motions: MotionSet, runs: Mapping[RunKey, SiteRun], beside: Beside
+    request: SiteRequest,
+    motions: MotionSet,
+    runs: Mapping[RunKey, SiteRun],
+    *,
+    confirmed: Sequence[ConfirmedRun] = (),
+    wind: float | None = None,
+    two_directions: TwoDirections | None = None,
+    slips_of_further: MotionSlips = MappingProxyType({}),
+    in_plane_only: str = "",
+    still: int = 0,
+    moves_at: float | None = None,
+    left_out: str = "",
 ) -> SiteAnswer:
-    """The answer, from all runs and from what is beside them."""
-    limits, slip, wind = request.limits, beside.two_directions, beside.wind
+    """The answer, from all runs and from what is beside them.
+
+    Args:
+        request, motions, runs: what was asked, the set and its checks, the runs of all stages.
+        confirmed: the deciding runs, repeated.
+        wind: utilisation under it; None: it was not asked for.
+        two_directions, slips_of_further: None and empty: not asked for, or not known.
+        in_plane_only: why these, which were asked for, are not known, in words.
+        still: runs that the rigid bound made superfluous.
+        moves_at: factor on the motions at which a rigid body first uplifts or slips.
+        left_out: stages that were not asked for, in words.
+    """
+    limits, slip = request.limits, two_directions
     own = [run for key, run in runs.items() if key.stage == SET]
-    rule = _rule_in_words(motions.count, limits)
+    rule = SAYS(what="rule", motions=motions.count, by_mean=motions.count >= MEAN_FROM, limits=limits)
     if not motions.valid:
-        sentence = (
-            f"Not valid: the set of motions fails its checks and is not used ({'; '.join(motions.reasons)})."
-        )
+        sentence = SAYS(what="no valid set", reasons=motions.reasons)
         return SiteAnswer(rule=rule, sentence=sentence, overturned=0, runs=0)
     groups = groups_of(own)
-    tally = RuleFound.of(groups)
+    tally = rule_of(groups)
     ranged, failed = rule_range(groups, runs)
-    further = further_motions(limits, runs, beside.slips_of_further)
+    further = further_motions(limits, runs, slips_of_further)
     against = [
         *_of_the_set(request, motions.count, groups, ranged, failed),
         *(reason for group in further for reason in of_further(request, group)),
-        *_of_the_deciding(limits, tally, beside.confirmed),
+        *_of_the_deciding(limits, tally, confirmed),
         *(_of_two_directions(slip, limits.slip_m) if slip else ()),
-        *([_Reason(NOT_SURE, beside.in_plane_only)] if beside.in_plane_only else ()),
+        *[(NOT_SURE, in_plane_only)] * bool(in_plane_only),
     ]
-    if left_out := beside.left_out or ("" if request.motions.further else NO_FURTHER):
-        against.append(_Reason(NOT_SURE, left_out))
+    if left_out := left_out or ("" if request.motions.further else SAYS(what="no further motions")):
+        against.append((NOT_SURE, left_out))
     used = tally.utilisation(limits)
     if used is not None and slip is not None:
         used = max(used, slip.slip_largest_m / limits.slip_m)
@@ -104,27 +109,21 @@ def answer_of(
     judged = None if unknown else gravest(against)
     actions = [ActionAnswer(name=EARTHQUAKE, answer=judged, utilisation=used)]
     if wind is not None:
-        actions.append(
-            ActionAnswer(name=WIND, answer=NOT_FULFILLED if wind > 1.0 else FULFILLED, utilisation=wind)
-        )
-    if wind is not None and wind > 1.0:
-        words = f"Wind uses {_above_one(wind)} times the resistance of the lightest container."
-        against.append(_Reason(NOT_FULFILLED, words))
+        judged = NOT_FULFILLED if wind > 1.0 else FULFILLED
+        actions.append(ActionAnswer(name=WIND, answer=judged, utilisation=wind))
+        against += [(NOT_FULFILLED, SAYS(what="wind", used=_above_one(wind)))] * (wind > 1.0)
     answer = None if unknown else gravest(against)
-    against.sort(key=lambda reason: reason.answer != NOT_FULFILLED)
+    against.sort(key=lambda reason: reason[0] != NOT_FULFILLED)
     slid_too_far = slip is not None and slip.slip_largest_m > limits.slip_m
     fails = [margin_factor(limits, runs), slip.margin_factor if slip else None]
     return SiteAnswer(
         answer=answer,
         fulfilled={FULFILLED: True, NOT_FULFILLED: False}.get(answer or ""),
-        reasons=tuple(reason.sentence for reason in against),
+        reasons=tuple(sentence for _, sentence in against),
         rule=rule,
-        sentence=_sentence(limits, answer, tally, against, slip, runs=len(own)),
-        overturned=tally.overturned,
-        invalid=tally.invalid,
-        runs=len(own),
-        still=beside.still,
-        **vars(tally.by_rule),
+        sentence=_sentence(limits, answer, tally, against, slip),
+        still=still,
+        **{name: tally[name] for name in (*BY_RULE, "overturned", "invalid", "runs")},
         exceeded=tuple(
             key for key in FIGURE_OF if key in tally.exceeded(limits) or (key == "slip_m" and slid_too_far)
         ),
@@ -132,13 +131,13 @@ def answer_of(
         actions=tuple(actions),
         margin_factor=min((factor for factor in fails if factor is not None), default=None),
         factor_at_first_overturning=first_overturning(runs),
-        factor_at_first_movement=beside.moves_at,
+        factor_at_first_movement=moves_at,
         two_directions=slip,
         rule_range=ranged,
         scan=scan_of(runs),
         failed_between=sum(key.stage == REFINED and run.outcome is None for key, run in runs.items()),
         further=further,
-        confirmed=tuple(beside.confirmed),
+        confirmed=tuple(confirmed),
     )
 
 
@@ -151,7 +150,7 @@ def no_answer_yet(
         own: the runs of the set that are there; missing: what is not, in words.
     """
     return SiteAnswer(
-        rule=_rule_in_words(motions.count, limits),
+        rule=SAYS(what="rule", motions=motions.count, by_mean=motions.count >= MEAN_FROM, limits=limits),
         sentence=f"No answer yet: {missing}.",
         overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
         invalid=sum(run.outcome == Outcome.INVALID for run in own),
@@ -159,152 +158,99 @@ def no_answer_yet(
     )
 
 
-def gravest(reasons: Iterable[_Reason]) -> str:
+def gravest(reasons: Iterable[Reason]) -> str:
     """The answer that some reasons leave."""
-    answers = {reason.answer for reason in reasons}
+    answers = {answer for answer, _ in reasons}
     return next((answer for answer in (NOT_FULFILLED, NOT_SURE) if answer in answers), FULFILLED)
 
 
 def _sentence(
     limits: LimitsTable,
     answer: str | None,
-    tally: RuleFound,
-    against: Sequence[_Reason],
+    tally: ScanPoint,
+    against: Sequence[Reason],
     slip: TwoDirections | None,
-    *,
-    runs: int,
 ) -> str:
     """The answer in words: what it rests on, or what speaks against it."""
     if answer is None:
-        return f"No answer: {tally.failed} of {runs} runs failed."
+        return SAYS(what="no answer", tally=tally)
     if answer != FULFILLED:
-        gravest_ones = [reason.sentence for reason in against if reason.answer == answer]
+        gravest_ones = [sentence for judged, sentence in against if judged == answer]
         return f"{answer.capitalize()}. {' '.join(gravest_ones)}"
-    figures, least = tally.by_rule, SHORT_MILLIMETRES.least
-    furthest = max(figures.slip_m or 0.0, slip.slip_largest_m if slip else 0.0)
+    least = SHORT_MILLIMETRES.least
+    furthest = max(tally.slip_m or 0.0, slip.slip_largest_m if slip else 0.0)
     slid = f"below {1e3 * least:g} mm" if furthest < least else SHORT_MILLIMETRES.text(furthest)
-    return (
-        f"Fulfilled under the rule below: none of {runs} runs overturned; rotation "
-        f"{RATIO.text(figures.rotation_ratio)} of the slenderness angle (limit {limits.rotation_ratio:g}), of a single "
-        f"motion {RATIO.text(figures.rotation_ratio_largest)} (limit {limits.single_rotation_ratio:g}), largest slip "
-        f"{slid} (limit {1e3 * limits.slip_m:g} mm)."
-    )
-
-
-def _rule_in_words(motions: int, limits: LimitsTable) -> str:
-    """The rule in words, for a number of motions."""
-    share = "the mean" if motions >= MEAN_FROM else "the largest"
-    single = (
-        f"no single rotation above {limits.single_rotation_ratio:g} of the slenderness angle; "
-        if motions >= MEAN_FROM or limits.single_rotation_ratio < limits.rotation_ratio
-        else ""
-    )
-    return (
-        f"for each motion the worse sign of the vertical; of rotations {share} over the {motions} motions, of slips "
-        f"the largest; of these the largest over all weights and frictions; {single}any overturning means not fulfilled"
-    )
+    return SAYS(what="fulfilled", tally=tally, limits=limits, slid=slid, ratio=RATIO.text)
 
 
 def _of_the_set(
     request: SiteRequest, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None, failed: int
-) -> Iterator[_Reason]:
+) -> Iterator[Reason]:
     """What the set and its repetitions say against it; `failed`: runs of these that did."""
-    tally, runs = RuleFound.of(groups), sum(len(group.runs) for group in groups)
+    tally = rule_of(groups)
     if tally.invalid:
-        yield _Reason(
-            NOT_FULFILLED,
-            f"{tally.invalid} of {runs} runs destroyed a corner: beyond that a run is not valid, and does not count as "
-            "standing.",
-        )
+        yield NOT_FULFILLED, SAYS(what="destroyed", tally=tally)
     if tally.overturned:
-        most = max(groups, key=lambda group: len(group.beyond({})))
-        yield _Reason(
-            NOT_FULFILLED,
-            f"{tally.overturned} of {runs} runs overturned: up to {len(most.beyond({}))} of {motions} motions overturn "
-            f"it ({where(request, most.first)}).",
-        )
+        group = max(groups, key=lambda group: len(group.beyond({})))
+        most, place = len(group.beyond({})), where(request, group.first)
+        yield NOT_FULFILLED, SAYS(what="overturned", tally=tally, motions=motions, most=most, place=place)
     if tally.overturned + tally.invalid:
         return
     for key in FIGURE_OF:
         yield from _of_a_limit(key, request, motions, groups, ranged)
     if ranged and ranged.overturned:
-        yield _Reason(
-            NOT_SURE,
-            f"In {ranged.overturned} of {ranged.repetitions} repetitions {ALIKE}, a run overturned or destroyed a "
-            "corner.",
-        )
+        yield NOT_SURE, SAYS(what="repetitions", ranged=ranged)
     if failed:
-        yield _Reason(NOT_SURE, f"Runs of the repetitions that failed: {failed}.")
+        yield NOT_SURE, SAYS(what="failed repetitions", failed=failed)
 
 
 def _of_a_limit(
     key: str, request: SiteRequest, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None
-) -> Iterator[_Reason]:
+) -> Iterator[Reason]:
     """Whether a limit is kept, by the set and by its repetitions."""
     figure, limit = FIGURE_OF[key], getattr(request.limits, key)
-    value = RuleFound.of(groups).by_rule[figure]
+    value = rule_of(groups)[figure]
     if value is None:
         return
     low, high = (ranged and ranged[figure]) or (value, value)
     if high <= limit:
         return
-    share = "mean" if motions >= MEAN_FROM else "largest"
-    words, bound = {
-        "slip_m": ("The largest slip", f"the clearance of {SHORT_MILLIMETRES.text(limit)}"),
-        "single_rotation_ratio": (
-            "The largest rotation of a single motion",
-            f"this program's own limit of {limit:g}",
-        ),
-    }.get(key, (f"The {share} rotation of the {motions} motions", f"the limit of {limit:g}"))
     places = places_of(key, limit, (value, low, high))
-    amount = unit_of(key).text(value, figures=places) + (
-        "" if key == "slip_m" else " of the slenderness angle"
-    )
     group = max(groups, key=lambda group: group.by_rule[figure] or 0.0)
-    place = where(request, group.first)
-    between = span_in_words(key, low, high, places)
-    if low > limit:
-        again = f", {between} in all repetitions" if ranged and low < high else ""
-        count = len(group.beyond({FOUND_FROM[key]: limit}))
-        single = "" if key == "rotation_ratio" else f"; {count} of {motions} motions beyond it"
-        yield _Reason(NOT_FULFILLED, f"{words} is {amount}{again}, beyond {bound} ({place}{single}).")
-    else:
-        sentence = (
-            f"{words} is {amount}, and {between} in repetitions {ALIKE}: {bound} lies between ({place})."
-        )
-        yield _Reason(NOT_SURE, sentence)
+    said = SAYS(
+        what="beyond a limit" if low > limit else "at a limit",
+        key=key,
+        motions=motions,
+        by_mean=motions >= MEAN_FROM,
+        amount=unit_of(key).text(value, figures=places),
+        between=span_in_words(key, low, high, places),
+        varies=bool(ranged) and low < high,
+        limit=limit,
+        clearance=SHORT_MILLIMETRES.text(limit),
+        place=where(request, group.first),
+        count=len(group.beyond({FOUND_FROM[key]: limit})),
+    )
+    yield NOT_FULFILLED if low > limit else NOT_SURE, said
 
 
-def of_further(request: SiteRequest, group: FurtherMotions) -> Iterator[_Reason]:
+def of_further(request: SiteRequest, group: FurtherMotions) -> Iterator[Reason]:
     """What the further motions for one container and friction say against it."""
     place = where(request, group)
     if group.failed:
-        words = f"{group.failed} of {group.failed + group.motions} further motions failed ({place})."
-        yield _Reason(NOT_SURE, words)
+        yield NOT_SURE, SAYS(what="failed motions", group=group, place=place)
     if not group.motions:
         return
-    per_cent = f"{100.0 * MOST_OVERTURNING:g} %"
-    beyond = f"{group.beyond_limits} went beyond a limit of a single motion{both_ways(group)}"
     least_beyond, _ = binomial_interval(group.beyond_limits, group.motions, CONFIDENCE)
-    if group.overturned + group.invalid and group.interval[1] > MOST_OVERTURNING:
-        low, high = (plain_number(100.0 * end, FIGURES) for end in group.interval)
-        yield _Reason(
-            NOT_SURE,
-            f"{group.overturned} of {group.motions} further motions overturned it{destroyed(group.invalid)} and "
-            f"{beyond} ({place}): under {low} to {high} % of such motions it does not stand, which may be more "
-            f"than {per_cent}.",
-        )
+    what = "too few motions" if group.interval[1] > MOST_OVERTURNING else ""
+    if group.overturned + group.invalid and what:
+        what = "further overturned"
     elif least_beyond > MOST_OVERTURNING:
-        yield _Reason(
-            NOT_SURE,
-            f"Of {group.motions} further motions {beyond} ({place}): of such motions more than {per_cent} do.",
-        )
-    elif group.interval[1] > MOST_OVERTURNING:
-        yield _Reason(
-            NOT_SURE,
-            f"{group.motions} further motions cannot show that at most {per_cent} overturn it: at least "
-            f"{least_draws(MOST_OVERTURNING, CONFIDENCE)} can.",
-        )
+        what = "further beyond"
+    if what:
+        low, high = (plain_number(100.0 * end, FIGURES) for end in group.interval)
+        least, most = least_draws(MOST_OVERTURNING, CONFIDENCE), f"{100.0 * MOST_OVERTURNING:g}"
+        ends: dict[str, Any] = {"low": low, "high": high, "least": least, "most": most}
+        yield NOT_SURE, SAYS(what=what, group=group, place=place, **ends)
 
 
 def ended(again: Sequence[ConfirmedRun]) -> dict[str, int]:
@@ -318,8 +264,8 @@ def ended(again: Sequence[ConfirmedRun]) -> dict[str, int]:
 
 
 def _of_the_deciding(
-    limits: LimitsTable, tally: RuleFound, again: Sequence[ConfirmedRun]
-) -> Iterator[_Reason]:
+    limits: LimitsTable, tally: ScanPoint, again: Sequence[ConfirmedRun]
+) -> Iterator[Reason]:
     """What the elastic model and the unknown inputs make of the deciding runs."""
     counts = ended(again)
     beyond = sum(
@@ -327,42 +273,30 @@ def _of_the_deciding(
         for repeated in again
     )
     if counts["failed"]:
-        yield _Reason(NOT_SURE, f"{counts['failed']} of {len(again)} {AGAIN} failed.")
+        yield NOT_SURE, SAYS(what="deciding failed", count=counts["failed"], of=len(again))
     if (bolts := max((repeated.bolt_utilisation or 0.0 for repeated in again), default=0.0)) > 1.0:
-        yield _Reason(
-            NOT_SURE,
-            f"In a deciding run the bolts carry {_above_one(bolts)} times their capacity: the stack does not stay one "
-            "body.",
-        )
+        yield NOT_SURE, SAYS(what="bolts", used=_above_one(bolts))
     if counts["invalid"]:
-        yield _Reason(NOT_SURE, f"{counts['invalid']} of {len(again)} {AGAIN} can destroy a corner.")
+        yield NOT_SURE, SAYS(what="deciding destroyed", count=counts["invalid"], of=len(again))
     if counts["fell"]:
-        yield _Reason(NOT_SURE, f"{counts['fell']} of {len(again)} {AGAIN} can overturn.")
+        yield NOT_SURE, SAYS(what="deciding fell", count=counts["fell"], of=len(again))
     elif beyond and not tally.fails(limits):
-        yield _Reason(
-            NOT_SURE,
-            "Deciding runs that go beyond a limit of a single motion, repeated with the elastic model: "
-            f"{beyond} of {len(again)}.",
-        )
+        yield NOT_SURE, SAYS(what="deciding beyond", count=beyond, of=len(again))
 
 
-def _of_two_directions(slip: TwoDirections, limit: float) -> Iterator[_Reason]:
+def _of_two_directions(slip: TwoDirections, limit: float) -> Iterator[Reason]:
     """Whether a body that slides in both directions keeps within the clearance, in the set and its repetitions."""
     low, high = slip.slip_range_m or (slip.slip_largest_m, slip.slip_largest_m)
     if high <= limit:
         return
-    place = f"(motion {slip.motion}{_period_and_friction(slip)}; a body that does not rock)."
-    clearance = f"the clearance of {SHORT_MILLIMETRES.text(limit)}"
-    words = "Under both horizontal components at once the largest slip is"
+    said = partial(SAYS, slip=slip, place=_period_and_friction(slip), clearance=SHORT_MILLIMETRES.text(limit))
     if low > limit:
         figures = places_of("slip_m", limit, (slip.slip_largest_m,))
         slid = SHORT_MILLIMETRES.text(slip.slip_largest_m, figures=max(figures, SHORT_MILLIMETRES.figures))
-        yield _Reason(NOT_FULFILLED, f"{words} {slid}, beyond {clearance} {place}")
+        yield NOT_FULFILLED, said(what="slides too far", slips=slid)
     else:
         slips = span_in_words("slip_m", low, high, places_of("slip_m", limit, (low, high)))
-        yield _Reason(
-            NOT_SURE, f"{words} {slips} mm in repetitions {ALIKE}: {clearance} lies between {place}"
-        )
+        yield NOT_SURE, said(what="may slide too far", slips=slips)
 
 
 def _above_one(utilisation: float) -> str:
@@ -370,11 +304,6 @@ def _above_one(utilisation: float) -> str:
     return next(
         (words for figures in (2, 3, 4) if (words := f"{utilisation:.{figures}g}") != "1"), "just over 1"
     )
-
-
-def both_ways(group: FurtherMotions) -> str:
-    """How many of those beyond a limit slid too far under both horizontal components."""
-    return f", {group.slid_too_far} by slip under both horizontal components" if group.slid_too_far else ""
 
 
 def destroyed(count: int) -> str:

@@ -17,7 +17,7 @@ from fem.seismic.methods import methods_of, rows_with_factors
 from fem.seismic.wind import wind_rows
 from fem.site.answer import destroyed
 from fem.site.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
-from fem.site.rule import RuleFound, groups_of
+from fem.site.rule import groups_of, rule_of
 from fem.site.tables import LimitsTable
 
 
@@ -165,9 +165,9 @@ def found_by_runs(
 
 
 def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: LimitsTable) -> tuple[str, str]:
-    tally = RuleFound.of(groups_of(done))
+    tally = rule_of(groups_of(done))
     words = f"{tally.overturned or 'none'} of {len(done)} overturned{destroyed(tally.invalid)}"
-    turned, largest = tally.by_rule.rotation_ratio, tally.by_rule.rotation_ratio_largest
+    turned, largest = tally.rotation_ratio, tally.rotation_ratio_largest
     if turned is not None and largest is not None:
         words += f"; by the rule {turned:.2g} of the angle" if largest > ROCKING else "; none rocks"
         if largest > ROCKING and largest > turned:
@@ -181,7 +181,7 @@ def _sliding(row: MethodRow, done: Sequence[SiteRun], width: float) -> tuple[str
     own = [run for run in done if (run.mu_static, run.mu_kinetic) == least]
     most = max(run.slipped for run in own)
     slides = most > least_slide(width)
-    mean = RuleFound.of(groups_of(own)).by_rule.slip_mean_m
+    mean = rule_of(groups_of(own)).slip_mean_m
     words = f"largest {length_in_words(most)}" if slides else "none slides"
     if slides and mean is not None:
         words += f", mean {length_in_words(mean)}"

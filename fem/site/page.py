@@ -18,9 +18,9 @@ from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import read_text
 from fem.site import figures
-from fem.site.answer import both_ways, ended, span_in_words, unit_of
+from fem.site.answer import ended, span_in_words, unit_of
 from fem.site.result import BY_RULE, RESULT_FILE, RuleRange, SiteAnswer, SiteMethod, SiteMotion, SiteResult
-from fem.site.rule import both_directions, groups_of
+from fem.site.rule import groups_of
 from fem.site.tables import MotionsTable
 from fem.study.driver import read_study
 
@@ -78,45 +78,21 @@ def shown(result: SiteResult, folder: Path, *, brief: bool = False) -> dict[str,
         "confirmed_keys": keys_of(Place.KEY),
         "groups": groups,
         "governing": governing,
-        "both_directions": both_directions(groups),
         "signs": sorted({run.vertical_sign for run in result.runs}, reverse=True) or [1],
         "every": {"moving": moving, "rest": len(every) - len(moving)},
         "merged_methods": merged_methods(result.methods),
         "drawn_methods": drawn if any(row.factor is not None for row in drawn) else [],
         "drawn_motions": [motion for motion in result.set.motions if motion.number <= MOST_DRAWN],
-        "further": furthest(answer),
         "ended": ended(answer.confirmed),
         "tried": f"factors {short(tried[0])} to {short(tried[-1])} tried"
         if tried
         else "other factors not computed",
-        "at_factor": partial(at_factor, answer),
         "ranged": partial(ranged, answer),
-        "spread": spread,
-        "both_ways": both_ways,
         "copies": [(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()],
         "default_seed": MotionsTable().seed,
         "figures": figures,
         "motion_figure": partial(motion_figure, folder, result),
     }
-
-
-def furthest(answer: SiteAnswer) -> dict[str, Any] | None:
-    """The further motions that speak most against it; None where none were computed."""
-    known = [group for group in answer.further if group.motions]
-    if not known:
-        return None
-    return {
-        "pairs": len(known),
-        "worst": max(known, key=lambda group: (group.overturned + group.invalid, group.beyond_limits)),
-        "furthest": max(known, key=lambda group: group.beyond_limits),
-    }
-
-
-def at_factor(answer: SiteAnswer, factor: float | None) -> str:
-    """A factor on the set; "at most" that, where no smaller one was tried."""
-    if factor is None:
-        return "none" if answer.scan else ABSENT
-    return f"{'at most ' * answer.is_least_tried(factor)}{short(factor, figures=3)} × the set"
 
 
 def ranged(answer: SiteAnswer, key: str) -> str:
@@ -126,11 +102,6 @@ def ranged(answer: SiteAnswer, key: str) -> str:
     text, ends = unit_of(key).text(answer[key], figures=2, bare=True), (answer.rule_range or RuleRange())[key]
     between = span_in_words(key, ends[0], ends[-1]) if ends else ""
     return typeset(f"{text} ({between})" if " to " in between else text)
-
-
-def spread(values: Sequence[float]) -> str:
-    """A range that was given."""
-    return " to ".join(short(value) for value in dict.fromkeys((min(values), max(values))))
 
 
 def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:

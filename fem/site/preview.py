@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from fem.html.page import text_of
 from fem.results.json_block import JsonBlock
 from fem.run.expected import of_a_record_s, of_its_band_s
 from fem.runtime.progress import clock_time
@@ -29,21 +30,9 @@ class Forecast(JsonBlock):
     cores: int
     quick: bool = False
 
-    @property
-    def words(self) -> str:
-        """In one sentence."""
-        on = f"{self.cores} core{'s' if self.cores > 1 else ''}"
-        moving, rest = self.of_set - self.of_set_still, ""
-        if self.of_set_still:
-            rest = f"{self.of_set_still} of {self.of_set} runs of the set rest below uplift and slip; "
-        more = "" if self.quick else ", further motions and other factors"
-        after = ""
-        if self.deciding_seconds:
-            after = f"; then the deciding runs with their bands, roughly {_rounded(self.deciding_seconds)}"
-        return (
-            f"{rest}{moving} to compute, up to {self.most} with repetitions{more}: up to roughly "
-            f"{_rounded(self.seconds)} on {on}{after}"
-        )
+    def words(self, load: float = 1.0) -> str:
+        """In one sentence; `load`: wall time over processor time, where other work shares the cores."""
+        return text_of("forecast.txt.j2", one=self, load=load, time=_rounded)
 
 
 def _rounded(seconds: float) -> str:
@@ -52,14 +41,14 @@ def _rounded(seconds: float) -> str:
     return clock_time(figure * math.ceil(seconds / figure - 1e-9))
 
 
-def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = True) -> Forecast:
-    """How many runs there will be, before the first is computed; arguments as `Stages.most_runs`."""
-    own, most = stages.most_runs(quick=quick, scan=scan)
+def forecast(stages: Stages, jobs: int, *, scan: bool = True) -> Forecast:
+    """How many runs there will be, before the first is computed; `scan` as of `Stages.most_runs`."""
+    own, most = stages.most_runs(scan=scan)
     request = stages.request
     case = still(next(iter(request.variants.values())), request.heading.model)
     total = len(stages.of_set())
-    moves = own > 0 and not quick
-    made = 0 if quick and own else request.motions.further
+    moves = own > 0 and not stages.quick
+    made = request.motions.further if moves or not own else 0
     return Forecast(
         of_set=total,
         of_set_still=total - own,
@@ -69,7 +58,7 @@ def forecast(stages: Stages, jobs: int, *, quick: bool = False, scan: bool = Tru
         if moves
         else 0.0,
         cores=jobs,
-        quick=quick,
+        quick=stages.quick,
     )
 
 

@@ -11,6 +11,7 @@ from fem.results import figures
 from fem.results.json_block import JsonBlock
 from fem.runtime import units
 from fem.runtime.units import RATIO
+from fem.site.tables import LimitsTable
 from fem.study.driver import StudyResult
 
 RESULT_FILE = "assess.json"
@@ -221,13 +222,30 @@ class RuleRange(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class ScanPoint(ByRule):
-    """All motions of the set times one factor."""
+    """What the rule finds in all motions of the set times one factor; no figure where a run of a group has none."""
 
     factor: float
     runs: int
     overturned: int
     invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
     failed: int = 0  #: runs without an outcome, of which the margin knows nothing
+
+    def exceeded(self, limits: LimitsTable) -> list[str]:
+        """The limits that are exceeded, by their keys; where a run overturned none is known to be kept."""
+        return [key for key, name in FIGURE_OF.items() if (self[name] or 0.0) > getattr(limits, key)]
+
+    def fails(self, limits: LimitsTable) -> bool:
+        """Whether the rule is not fulfilled."""
+        return self.overturned + self.invalid > 0 or bool(self.exceeded(limits))
+
+    def utilisation(self, limits: LimitsTable) -> float | None:
+        """The largest share of a limit; None where a run overturned or failed."""
+        used = [
+            None if self[name] is None else self[name] / getattr(limits, key)
+            for key, name in FIGURE_OF.items()
+        ]
+        known = [use for use in used if use is not None]
+        return max(known) if len(known) == len(used) else None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,12 +7,11 @@ overturning means not fulfilled, and no single motion may turn the container fur
 silent there, so these are the rules of this program.
 """
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import groupby
-from typing import Any, Self
+from typing import Any
 
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.outcome import ENDINGS, Outcome
@@ -37,7 +36,6 @@ from fem.site.result import (
 from fem.site.tables import LimitsTable
 
 MEAN_FROM = 7  #: motions from which the mean counts
-SHARE = 0.3  #: of the other horizontal component
 CONFIDENCE = 0.95
 #: largest slip [m] under both horizontal components, by motion, period of the building and friction
 MotionSlips = Mapping[tuple[int, float | None, float, float], float]
@@ -120,44 +118,17 @@ class RunGroup:
         return list(worst.values())
 
 
-@dataclass(frozen=True, kw_only=True)
-class RuleFound:
-    """What the rule finds in the runs of some groups."""
-
-    overturned: int
-    failed: int
-    invalid: int  #: runs that destroyed a corner
-    by_rule: ByRule  #: over the groups the largest; None where one has none
-
-    @classmethod
-    def of(cls, groups: Sequence[RunGroup]) -> Self:
-        """From the runs of groups."""
-        figures = {name: [group.by_rule[name] for group in groups] for name in BY_RULE}
-        return cls(
-            overturned=sum(group.overturned for group in groups),
-            failed=sum(group.failed for group in groups),
-            invalid=sum(group.invalid for group in groups),
-            by_rule=ByRule(
-                **{name: None if None in row else max(row, default=None) for name, row in figures.items()}
-            ),
-        )
-
-    def exceeded(self, limits: LimitsTable) -> list[str]:
-        """The limits that are exceeded, by their keys; where a run overturned none is known to be kept."""
-        return [key for key, name in FIGURE_OF.items() if (self.by_rule[name] or 0.0) > getattr(limits, key)]
-
-    def fails(self, limits: LimitsTable) -> bool:
-        """Whether the rule is not fulfilled."""
-        return self.overturned + self.invalid > 0 or bool(self.exceeded(limits))
-
-    def utilisation(self, limits: LimitsTable) -> float | None:
-        """The largest share of a limit; None where a run overturned or failed."""
-        used = [
-            None if self.by_rule[name] is None else self.by_rule[name] / getattr(limits, key)
-            for key, name in FIGURE_OF.items()
-        ]
-        known = [use for use in used if use is not None]
-        return max(known) if len(known) == len(used) else None
+def rule_of(groups: Sequence[RunGroup], factor: float = 1.0) -> ScanPoint:
+    """What the rule finds in the runs of some groups, at a factor on the motions: the largest over the groups."""
+    figures = {name: [group.by_rule[name] for group in groups] for name in BY_RULE}
+    return ScanPoint(
+        factor=factor,
+        runs=sum(len(group.runs) for group in groups),
+        overturned=sum(group.overturned for group in groups),
+        invalid=sum(group.invalid for group in groups),
+        failed=sum(group.failed for group in groups),
+        **{name: None if None in row else max(row, default=None) for name, row in figures.items()},
+    )
 
 
 def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
@@ -166,28 +137,6 @@ def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
     for run in runs:
         groups.setdefault(run.group, []).append(run)
     return [RunGroup(runs=tuple(members)) for members in groups.values()]
-
-
-def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
-    """Slip under 100 % of one horizontal component and 30 % of the other, where both elevations were run [m].
-
-    EN 1998-1:2004, 4.3.3.5.1 (3), of effects: the slips as vectors. For friction, which is not linear, that is an
-    estimate, so it is shown and is no part of the rule.
-
-    Returns:
-        The group of the elevation along the width, and the larger of the two combinations.
-    """
-    combined = []
-    for along in groups:
-        for across in groups:
-            same = replace(across.first, elevation=along.first.elevation)
-            if along.first.elevation != "width" or across.first.elevation == "width":
-                continue
-            one, other = along.by_rule.slip_m, across.by_rule.slip_m
-            if same.group == along.first.group and one is not None and other is not None:
-                pairs = ((one, other), (other, one))
-                combined.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
-    return combined
 
 
 def governing_groups(groups: Sequence[RunGroup]) -> list[RunGroup]:
@@ -244,13 +193,13 @@ def rule_range(groups: Sequence[RunGroup], runs: Mapping[RunKey, SiteRun]) -> tu
     again = runs_by_factor(runs, REPEATED)
     if not again:
         return None, 0
-    tallies = [RuleFound.of(groups)]
+    tallies = [rule_of(groups)]
     for rerun in again.values():
         repeated = {group.first.group: group for group in groups_of(rerun)}
-        tallies.append(RuleFound.of([repeated.get(group.first.group, group) for group in groups]))
+        tallies.append(rule_of([repeated.get(group.first.group, group) for group in groups]))
     ranges = {}
     for name in RANGED:
-        known = [tally.by_rule[name] for tally in tallies if tally.by_rule[name] is not None]
+        known = [tally[name] for tally in tallies if tally[name] is not None]
         ranges[name] = (min(known), max(known)) if known else ()
     repetitions = tallies[1:]
     span = RuleRange(
@@ -307,8 +256,7 @@ def margin_factor(limits: LimitsTable, runs: Mapping[RunKey, SiteRun]) -> float 
     def fails(factor: float) -> bool:
         # Between factors some runs of a group may be there alone: they have no mean.
         return any(
-            group.overturned + group.invalid
-            or (len(group.runs) == whole and RuleFound.of([group]).fails(limits))
+            group.overturned + group.invalid or (len(group.runs) == whole and rule_of([group]).fails(limits))
             for group in groups_of(by_factor[factor])
         )
 
@@ -328,17 +276,5 @@ def first_overturning(runs: Mapping[RunKey, SiteRun]) -> float | None:
 def scan_of(runs: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
     """The set at every factor tried; empty where that is one."""
     by_factor = runs_by_factor(runs, SET, SCAN)
-    points = []
-    for factor, own in by_factor.items():
-        tally = RuleFound.of(groups_of(own))
-        points.append(
-            ScanPoint(
-                factor=factor,
-                runs=len(own),
-                overturned=tally.overturned,
-                invalid=tally.invalid,
-                failed=tally.failed,
-                **vars(tally.by_rule),
-            )
-        )
+    points = [rule_of(groups_of(own), factor) for factor, own in by_factor.items()]
     return tuple(points) if len(points) > 1 else ()

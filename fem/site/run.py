@@ -7,12 +7,13 @@ neither on that nor on the number of cores.
 import hashlib
 import platform
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Unpack
 
-from fem.case.case import case_hash
+from fem.case.case import Case, case_hash
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
 from fem.results.figures import SLIPPED, TURNED, Place
@@ -49,7 +50,7 @@ from fem.site.result import (
     motion_stem,
 )
 from fem.site.rule import governing_run
-from fem.site.runs import COLUMNS, CONFIRMING, KEYS, RunCases, cells_of
+from fem.site.runs import COLUMNS, CONFIRMING, KEYS, cases_of, cells_of
 from fem.site.stages import Stages
 from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import NamedStages, Runner, compute_many
@@ -60,7 +61,10 @@ OF_A_MOTION = 75_000  #: numbers, in three files
 QUICK = (
     "Left out by --quick: further motions, other factors on the motions, the deciding runs with their bands."
 )
-OTHER_FACTORS, DECIDING = "the set at other factors", "the deciding runs with their bands"  #: stages
+#: stages
+FURTHER_ONES, OTHER_FACTORS = "further motions", "the set at other factors"
+DECIDING = "the deciding runs with their bands"
+LOOSE = 0.55  #: cost of a run with the energy tolerance of draws, over one of the set
 TIMES_THE_SET = 20  #: runs of all stages over those of the set
 
 
@@ -78,20 +82,16 @@ def run_site(
         allow_outside: take records from outside the folder of the site file.
         quick: the set and its repetitions alone; "fulfilled" then only of a container that rests.
     """
-    stages = Stages.of(request, folder, allow_outside=allow_outside)
-    work = Verification(stages=stages, quick=quick)
+    stages = Stages.of(request, folder, allow_outside=allow_outside, quick=quick)
     files = len(stages.ground) * (1 + len(stages.floors)) + request.motions.further
     study = Study(
         kind=SITE,
-        request=work.digest,
+        request=digest_of(stages),
         result=SiteResult,
-        compute=work.compute,
+        compute=partial(_compute, stages),
         texts=texts_of(request, SITE),
         size=table_bytes(files, OF_A_MOTION)
         + table_bytes(TIMES_THE_SET * len(stages.of_set()), len(COLUMNS)),
-        subject="the verification",
-        way_out="take fewer motions",
-        progress=lambda place: "its runs so far",
     )
     return run_study(study, folder, **options)
 
@@ -110,172 +110,166 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     return hash_of([data, case_hash(request.container), digest.hexdigest()])
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Verification:
-    """A verification that is asked for, and how far it is."""
+def digest_of(stages: Stages) -> str:
+    """Equal for requests that give the same result."""
+    digest = site_hash(stages.request, stages.ground)
+    return hash_of([digest, "quick"]) if stages.quick else digest
 
-    stages: Stages
-    quick: bool = False
-    began: float = field(default_factory=time.perf_counter)  #: when it was asked for [s]
 
-    @property
-    def request(self) -> SiteRequest:
-        """What is asked."""
-        return self.stages.request
+def set_of(stages: Stages, described: Sequence[SiteMotion] = ()) -> MotionSet:
+    """The set of motions and its checks."""
+    return set_result(stages.request, stages.checked, stages.ground, described)
 
-    @property
-    def digest(self) -> str:
-        """Equal for requests that give the same result."""
-        digest = site_hash(self.request, self.stages.ground)
-        return hash_of([digest, "quick"]) if self.quick else digest
 
-    def set_of(self, described: Sequence[SiteMotion]) -> MotionSet:
-        """The set of motions and its checks."""
-        return set_result(self.request, self.stages.checked, self.stages.ground, described)
+def _compute(stages: Stages, place: ResultFolder, runner: Runner) -> SiteResult:
+    """Write the motions, compute what is missing, and write runs and page."""
+    motions = set_of(stages, write_ground(place.path, stages.ground))
+    copy_files(stages.request, place.path)
+    motions = replace(motions, notes=(*motions.notes, *left_elsewhere(stages.request)))
+    write_floors(stages)
+    if motions.valid:
+        runner.reporter.message(forecast(stages, runner.jobs).words(stages.load))
+    answer = answered(stages, motions, runner, place.path / RUNS)
+    place.check()
+    result = _result(stages, motions, answer)
+    if result.status == COMPLETED:
+        if stages.rows.runs:
+            place.write(RUNS, stages.rows.table())
+        place.write(PAGE, site_report(place.path, result))
+    return result
 
-    def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
-        """Write the motions, compute what is missing, and write runs and page."""
-        motions = self.set_of(write_ground(place.path, self.stages.ground))
-        copy_files(self.request, place.path)
-        motions = replace(motions, notes=(*motions.notes, *left_elsewhere(self.request)))
-        self.write_floors()
-        if motions.valid:
-            runner.reporter.message(forecast(self.stages, runner.jobs, quick=self.quick).words)
-        answer = self.answer(motions, runner, place.path / RUNS)
-        place.check()
-        result = self._result(motions, answer)
-        if result.status == COMPLETED:
-            if self.stages.rows.runs:
-                place.write(RUNS, self.stages.rows.table())
-            place.write(PAGE, site_report(place.path, result))
-        return result
 
-    def write_floors(self, *, ground: bool = False) -> None:
-        """Write the motions of the floors of a building, and `ground`: those without one, for the runs."""
-        for period, moved in self.stages.floors.items():
-            for number, motion in enumerate(moved, start=1):
-                if ground or period is not None:
-                    write_csv_files(self.stages.folder, motion, motion_stem(number, period))
+def write_floors(stages: Stages, *, ground: bool = False) -> None:
+    """Write the motions of the floors of a building, and `ground`: those without one, for the runs."""
+    for period, moved in stages.floors.items():
+        for number, motion in enumerate(moved, start=1):
+            if ground or period is not None:
+                write_csv_files(stages.folder, motion, motion_stem(number, period))
 
-    def answer(
-        self, motions: MotionSet, runner: Runner, log: Path, value: float | None = None
-    ) -> SiteAnswer | None:
-        """Compute the runs that are missing; None where it was interrupted.
 
-        Args:
-            motions: the set.
-            log: of the runs.
-            value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
-                without what comes after the first that speaks against it.
-        """
-        stages, rows = self.stages, self.stages.rows
-        again: list[ConfirmedRun] = []
-        left_out = QUICK if self.quick and not stages.rests else ""
-        varied = {} if value is None else {"value": float}
-        columns = varied | COLUMNS
+def answered(
+    stages: Stages, motions: MotionSet, runner: Runner, log: Path, value: float | None = None
+) -> SiteAnswer | None:
+    """Compute the runs that are missing; None where it was interrupted.
 
-        def now() -> SiteAnswer:
-            return answer_of(self.request, motions, rows.in_order(), stages.beside(again, left_out))
+    Args:
+        stages: asked for.
+        motions: the set.
+        runner: computes them.
+        log: of the runs.
+        value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
+            without what comes after the first that speaks against it.
+    """
+    rows, request = stages.rows, stages.request
+    again: list[ConfirmedRun] = []
+    left_out = QUICK if stages.quick and not stages.rests else ""
+    varied = {} if value is None else {"value": float}
+    columns = varied | COLUMNS
 
-        names = ["the set", "its repetitions"]
-        names += ["further motions"] * stages.has_further(quick=self.quick)
-        scans = not (self.quick or varied)
-        names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
-        told = NamedStages([] if varied else names, runner.reporter)  # of a value of `size` none is named
+    def now() -> SiteAnswer:
+        beside = stages.beside()
+        return answer_of(request, motions, rows.in_order(), confirmed=again, left_out=left_out, **beside)
 
-        begun: list[str] = []  #: the stage whose runs follow
+    names = ["the set", "its repetitions"] + [FURTHER_ONES] * stages.has_further
+    scans = not (stages.quick or varied)
+    names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
+    told = NamedStages([] if varied else names, runner.reporter)  # of a value of `size` none is named
 
-        def batches() -> Iterator[Sequence[RunKey]]:
-            for name, keys in zip(names, stages.of_the_answer(runner, quick=self.quick), strict=False):
-                begun[:] = [name]
-                yield keys
-                if varied and now().answer == NOT_FULFILLED:
-                    return
-            if scans:
-                begun.clear()
-                told.begin(OTHER_FACTORS, stages.most_scanned, up_to=True)
-                yield from stages.of_the_margin()
+    begun: list[str] = []  #: the stage whose runs follow
 
-        def begin(count: int) -> None:
-            if begun:
-                told.begin(begun.pop(), count)
+    def batches() -> Iterator[Sequence[RunKey]]:
+        for name, keys in zip(names, stages.of_the_answer(runner), strict=False):
+            begun[:] = [name]
+            yield keys
+            told.end()
+            if varied and now().answer == NOT_FULFILLED:
+                return
+        if scans:
+            begun.clear()
+            told.begin(OTHER_FACTORS, stages.most_scanned, up_to=True, weight=LOOSE)
+            yield from stages.of_the_margin()
 
-        def note(line: str) -> None:
-            row = row_of(columns, line)
-            row.pop("value", None)
-            rows.add(row)
+    def begin(count: int) -> None:
+        if begun:
+            name = begun.pop()
+            told.begin(name, count, weight=LOOSE if name == FURTHER_ONES else 1.0)
 
-        if motions.valid:
-            cases = RunCases.of(self.request, stages.folder)
-            LoggedRuns(
-                what="runs",
-                path=log,
-                columns=columns,
-                make=cases,
-                model_of=lambda key: key.model,
-                key=lambda key: (value, *cells_of(key)) if varied else cells_of(key),
-                ids=len(KEYS) + len(varied),
-                of=f"{line_of([value])}," if varied else "",
-                note=note,
-                told=begin,
-            ).run(runner, batches())
-            if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
-                runs, own = rows.in_order(), rows.of(stages.of_set())
-                keys = [
-                    key
-                    for key in deciding(runs, governing_run(self.request.limits, own))
-                    if key not in rows.still
-                ]
-                if keys:
-                    told.begin(DECIDING, len(keys), alike=False)  # of another model
-                    again = confirmed(cases, runs, keys, runner.jobs)
-        return None if runner.stop() else now()
+    def note(line: str) -> None:
+        row = row_of(columns, line)
+        row.pop("value", None)
+        rows.add(row)
 
-    def _result(self, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
-        """Everything that was found; without an answer what there is, and what is missing."""
-        request, inputs, rows = self.request, inputs_of(self.request), self.stages.rows
-        wanted, missing = self.stages.of_set(), None
-        own = rows.of(wanted)
-        if answer is None:
-            missing = (
-                "repetitions, further motions, other factors on the motions or the deciding runs are missing"
-            )
-            if left := len(rows.missing(wanted)):
-                missing = f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
-        action = action_result(request.action, self.stages.checked)
-        floor = floor_result(request, self.stages.floors, self.stages.checked)
-        document = request.document.model_dump(exclude_none=True) if request.document else None
-        return SiteResult(
-            status=COMPLETED if answer else INTERRUPTED,
-            answer=answer.sentence if answer else None,
-            missing=missing,
-            title=request.heading.title,
-            inputs=inputs,
-            action=action,
-            floor=floor,
-            set=motions,
-            bodies=self.stages.bodies,
-            runs=tuple(rows.in_order().values()),
-            result=answer or no_answer_yet(request.limits, motions, own, missing or ""),
-            methods=site_methods(
-                bodies=self.stages.bodies,
-                inputs=inputs,
-                site=request.action,
-                motions=motions.motions,
-                periods_s=action.periods_s,
-                floor=floor,
-                runs=own if answer else (),
-            ),
-            provenance=SiteProvenance(
-                command=command_line("assess", request.origin.place, *["--quick"] * self.quick),
-                site_hash=self.digest,
-                case_hash=case_hash(request.container),
-                versions=tuple(versions().items()),
-                system=f"{platform.system()} {platform.release()}, {platform.machine()}",
-                wall_s=time.perf_counter() - self.began,
-            ),
-            document=None if document is None else Signature(**document),
+    if motions.valid:
+        cases = cases_of(request, stages.folder)
+        LoggedRuns(
+            what="runs",
+            path=log,
+            columns=columns,
+            make=cases,
+            model_of=lambda key: key.model,
+            key=lambda key: (value, *cells_of(key)) if varied else cells_of(key),
+            ids=len(KEYS) + len(varied),
+            of=f"{line_of([value])}," if varied else "",
+            note=note,
+            told=begin,
+        ).run(runner, batches())
+        if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
+            runs, own = rows.in_order(), rows.of(stages.of_set())
+            keys = [
+                key for key in deciding(runs, governing_run(request.limits, own)) if key not in rows.still
+            ]
+            if keys:
+                expected = forecast(stages, runner.jobs).deciding_seconds
+                told.begin(DECIDING, len(keys), seconds=stages.load * expected)
+                again = confirmed(cases, runs, keys, runner.jobs)
+    return None if runner.stop() else now()
+
+
+def _result(stages: Stages, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
+    """Everything that was found; without an answer what there is, and what is missing."""
+    request, inputs, rows = stages.request, inputs_of(stages.request), stages.rows
+    wanted, missing = stages.of_set(), None
+    own = rows.of(wanted)
+    if answer is None:
+        missing = (
+            "repetitions, further motions, other factors on the motions or the deciding runs are missing"
         )
+        if left := len(rows.missing(wanted)):
+            missing = f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
+    action = action_result(request.action, stages.checked)
+    floor = floor_result(request, stages.floors, stages.checked)
+    document = request.document.model_dump(exclude_none=True) if request.document else None
+    return SiteResult(
+        status=COMPLETED if answer else INTERRUPTED,
+        answer=answer.sentence if answer else None,
+        missing=missing,
+        title=request.heading.title,
+        inputs=inputs,
+        action=action,
+        floor=floor,
+        set=motions,
+        bodies=stages.bodies,
+        runs=tuple(rows.in_order().values()),
+        result=answer or no_answer_yet(request.limits, motions, own, missing or ""),
+        methods=site_methods(
+            bodies=stages.bodies,
+            inputs=inputs,
+            site=request.action,
+            motions=motions.motions,
+            periods_s=action.periods_s,
+            floor=floor,
+            runs=own if answer else (),
+        ),
+        provenance=SiteProvenance(
+            command=command_line("assess", request.origin.place, *["--quick"] * stages.quick),
+            site_hash=digest_of(stages),
+            case_hash=case_hash(request.container),
+            versions=tuple(versions().items()),
+            system=f"{platform.system()} {platform.release()}, {platform.machine()}",
+            wall_s=time.perf_counter() - stages.began,
+        ),
+        document=None if document is None else Signature(**document),
+    )
 
 
 def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
@@ -291,7 +285,7 @@ def deciding(runs: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[
 
 
 def confirmed(
-    cases: RunCases, runs: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
+    cases: Callable[[RunKey], Case], runs: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
 ) -> list[ConfirmedRun]:
     """These runs with the reduced model, each with its band unless it rests far below the static limits.
 

@@ -1,8 +1,8 @@
 """The runs of a verification: the case of each, and their rows."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -43,47 +43,34 @@ def cells_of(key: RunKey) -> tuple[Any, ...]:
     return tuple(getattr(key, name) for name in KEYS)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RunCases:
-    """Makes the case of a run; picklable. Motions are read from the folder of results."""
+def cases_of(request: SiteRequest, folder: Path) -> Callable[[RunKey], Case]:
+    """What makes the case of a run, picklable; its motion is read from the folder of results.
 
-    folder: Path  #: of the results, absolute
-    bases: Mapping[tuple[str, str], Case]  #: by weight and elevation
+    That raises CaseError where the motion is missing.
+    """
+    bases = {name: still(case, request.heading.model) for name, case in request.variants.items()}
+    return partial(_case, folder.resolve() / MOTIONS, {name: CaseMaker(base) for name, base in bases.items()})
 
-    @classmethod
-    def of(cls, request: SiteRequest, folder: Path) -> "RunCases":
-        """For a request whose motions are written in a folder."""
-        bases = {name: still(case, request.heading.model) for name, case in request.variants.items()}
-        return cls(folder=folder.resolve(), bases=bases)
 
-    def __call__(self, key: RunKey) -> Case:
-        """The case of a run.
-
-        Raises:
-            CaseError: its motion is missing.
-        """
-        place = self.folder / MOTIONS
-        values: dict[str, Any] = {
-            "solver.model": key.model,
-            "contact.mu_static": key.mu_static,
-            "contact.mu_kinetic": key.mu_kinetic,
-            "motion.kind": "table",
-            "motion.file": str(place / f"{key.stem}_h.csv"),
-            "motion.scale": key.factor,
+def _case(place: Path, makers: Mapping[tuple[str, str], CaseMaker], key: RunKey) -> Case:
+    make = makers[key.mass, key.elevation]
+    values: dict[str, Any] = {
+        "solver.model": key.model,
+        "contact.mu_static": key.mu_static,
+        "contact.mu_kinetic": key.mu_kinetic,
+        "motion.kind": "table",
+        "motion.file": str(place / f"{key.stem}_h.csv"),
+        "motion.scale": key.factor,
+    }
+    if key.stage not in (SET, REPEATED):  # others are counted, or seek the margin of the rule
+        values[TOLERANCE] = tolerance_of_draws(make.base)
+    if key.vertical_sign:
+        values |= {
+            "vertical.kind": "table",
+            "vertical.file": str(place / f"{key.stem}_v.csv"),
+            "vertical.scale": key.vertical_sign * key.factor,
         }
-        if key.stage not in (SET, REPEATED):  # others are counted, or seek the margin of the rule
-            values[TOLERANCE] = tolerance_of_draws(self.bases[key.mass, key.elevation])
-        if key.vertical_sign:
-            values |= {
-                "vertical.kind": "table",
-                "vertical.file": str(place / f"{key.stem}_v.csv"),
-                "vertical.scale": key.vertical_sign * key.factor,
-            }
-        return self._makers[key.mass, key.elevation](values)
-
-    @cached_property
-    def _makers(self) -> dict[tuple[str, str], CaseMaker]:
-        return {name: CaseMaker(base) for name, base in self.bases.items()}
+    return make(values)
 
 
 def still(case: Case, model: str) -> Case:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby, pairwise
 from typing import Literal
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from fem.case.tables.quantities import Quantity
 from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
+from fem.html.page import text_of
 from fem.run.bracket import least_width, values_to_try
 from fem.site.bodies import bodies_of
 from fem.site.request import TABLES, SiteRequest
@@ -314,30 +316,14 @@ def _wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> f
 def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
     """The answer in one sentence: the value, what fails beyond it, and the islands."""
     intervals = _fulfilled_intervals(points)
-    low, high = axis.values[0], axis.values[-1]
-    tried = f"from {_value(low, axis)} to {_value(high, axis)}"
-    if not intervals:
-        reasons = " or ".join(dict.fromkeys(point.fails for point in points))
-        return f"The rule is not fulfilled at any {axis.words} tried {tried}: {reasons}."
-    if intervals == [(low, high)]:
-        return f"The rule is fulfilled at every {axis.words} tried {tried}."
-    value = _wanted_value(axis, intervals)
-    if value is None:
-        return (
-            f"The rule is fulfilled for a {axis.words} {_stretches(intervals, axis)}, of those tried {tried}."
-        )
-    others = intervals[:-1] if axis.wanted == "least" else intervals[1:]
-    island = f"; also {_stretches(others, axis)}, an island that does not count" if others else ""
-    if axis.wanted == "least":
-        beyond = [point for point in points if point.value < value][-1]
-        return (
-            f"The least {axis.words} is {_value(value, axis, up=True)}: the rule is fulfilled from there to "
-            f"{_value(high, axis)} (below: {beyond.fails}){island}."
-        )
-    beyond = next(point for point in points if point.value > value)
-    return (
-        f"The largest {axis.words} is {_value(value, axis, up=False)}: the rule is fulfilled from "
-        f"{_value(low, axis)} to there (above: {beyond.fails}){island}."
+    return text_of(
+        "size_answer.txt.j2",
+        axis=axis,
+        points=points,
+        intervals=intervals,
+        wanted=_wanted_value(axis, intervals),
+        value=partial(_value, axis=axis),
+        stretches=partial(_stretches, axis=axis),
     )
 
 

@@ -20,7 +20,7 @@ from fem.site.figures import draw_size
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import SiteAnswer
-from fem.site.run import RUNS, Verification, site_hash
+from fem.site.run import RUNS, answered, set_of, site_hash, write_floors
 from fem.site.runs import COLUMNS
 from fem.site.size import SizeAxis, SizeResult, at, followers, next_values, size_asked, size_result, so_far
 from fem.site.stages import Stages
@@ -60,9 +60,6 @@ def run_size(
         compute=partial(_compute, request, axis, begun, allow_outside),
         texts=texts_of(request, SIZE),
         size=BYTES_OF_SETS,
-        subject="the result",
-        way_out="take fewer motions",
-        progress=lambda place: "its runs so far",
     )
     return run_study(study, folder, **options)
 
@@ -77,24 +74,27 @@ def _compute(
 ) -> SizeResult:
     """Verify one value after another, as long as there are any to be tried."""
     began, working = time.perf_counter(), place.path / WORKING
-    tried: dict[float, Verification] = {}
+    tried: dict[float, Stages] = {}
     answers: dict[float, SiteAnswer] = {}
     made: dict[Path, dict[str, GroundMotion]] = {}
     copy_files(request, place.path)
     try:
         while values := next_values(axis, answers):
             tried |= {
-                value: verification_at(request, axis, value, working, made, allow_outside=allow_outside)
+                value: stages_at(request, axis, value, working, made, allow_outside=allow_outside)
                 for value in values
             }
-            each = [forecast(tried[value].stages, runner.jobs, scan=False) for value in values]
+            each = [forecast(tried[value], runner.jobs, scan=False) for value in values]
             what = f"{len(values)} value{'s' * (len(values) > 1)}, up to {sum(one.most for one in each)} runs"
-            seconds = sum(one.seconds + one.deciding_seconds for one in each)
+            loads = [tried[value].load for value in values]
+            seconds = sum(
+                load * (one.seconds + one.deciding_seconds) for load, one in zip(loads, each, strict=True)
+            )
             runner.reporter.message(f"{what}: {expected_words(seconds, runner.jobs)}")
             for value in values:
                 runner.reporter.message(so_far(axis, answers, value))
-                work = tried[value]
-                answer = work.answer(work.set_of(()), runner, place.path / RUNS, value)
+                stages = tried[value]
+                answer = answered(stages, set_of(stages), runner, place.path / RUNS, value)
                 if answer is None:
                     left = f"{len(answers)} values are decided, {len(tried) - len(answers)} are not"
                     return replace(begun, status=INTERRUPTED, missing=left)
@@ -105,16 +105,16 @@ def _compute(
     result = size_result(axis, answers, begun)
     # by value, and in the order of each verification, whatever the order in which runs ended
     rows = (
-        (value, *work.stages.rows.rows[key].values())
-        for value, work in sorted(tried.items())
-        for key in work.stages.rows.in_order()
+        (value, *stages.rows.rows[key].values())
+        for value, stages in sorted(tried.items())
+        for key in stages.rows.in_order()
     )
     place.write(RUNS, table_text({"value": float} | COLUMNS, rows))
     place.write(FIGURE, draw_size(result, inputs_of(request)))
     return replace(result, wall_s=time.perf_counter() - began)
 
 
-def verification_at(
+def stages_at(
     request: SiteRequest,
     axis: SizeAxis,
     value: float,
@@ -122,8 +122,8 @@ def verification_at(
     made: dict[Path, dict[str, GroundMotion]],
     *,
     allow_outside: bool = False,
-) -> Verification:
-    """That at a value; values that do not change the motions share their folder.
+) -> Stages:
+    """The runs at a value; values that do not change the motions share their folder.
 
     Args:
         working: holds the folders; made: the motions in each, by stem, to which those of this value are added.
@@ -132,8 +132,7 @@ def verification_at(
     moves = axis.key.partition(".")[0] in MOVING
     folder = working / f"{value if moves else stages.longest:.9g}"
     motions = made.setdefault(folder, {})
-    motions |= stages.screening.motions
-    screening = replace(stages.screening, motions=motions)
-    work = Verification(stages=replace(stages, folder=folder, screening=screening))
-    work.write_floors(ground=True)
-    return work
+    motions |= stages.motions
+    stages = replace(stages, folder=folder, motions=motions)
+    write_floors(stages, ground=True)
+    return stages

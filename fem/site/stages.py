@@ -1,13 +1,17 @@
 """The runs of a verification stage by stage: each is asked for when the one before is there."""
 
+import math
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from fem.model.resting import KEPT, BodyAtRest
 from fem.results.outcome import Outcome
 from fem.run.bracket import values_to_try
 from fem.runtime.arrays import FloatArray
@@ -16,8 +20,7 @@ from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.seismic.two_directions import largest_slip, largest_slips
-from fem.site.answer import Beside
-from fem.site.bodies import Screening, bodies_of
+from fem.site.bodies import at_rest_by_the_bound, bodies_of
 from fem.site.copies import inputs_of
 from fem.site.methods import wind_utilisation
 from fem.site.motions import (
@@ -35,14 +38,13 @@ from fem.site.result import (
     REPEATED,
     SCAN,
     SET,
-    ConfirmedRun,
     RunKey,
     SiteBody,
     SiteRun,
     TwoDirections,
     motion_stem,
 )
-from fem.site.rule import MotionSlips, RuleFound, RunGroup, governing_groups, groups_of, runs_by_factor
+from fem.site.rule import MotionSlips, RunGroup, governing_groups, groups_of, rule_of, runs_by_factor
 from fem.site.runs import RunRows, key_of
 from fem.study.runner import Runner
 from fem.study.workers import hand_out
@@ -52,6 +54,8 @@ SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
 BETWEEN = 3
 #: factors of the repetitions: nobody can tell such motions from those of the set, rocking can
 REPETITIONS = (1.0 - 1e-4, 1.0 - 1e-5, 1.0 + 1e-6, 1.0 + 1e-5, 1.0 + 1e-4)
+#: processor time from which it tells the load of the machine [s], and the most that is believed
+LEAST_MEASURED_S, MOST_LOAD = 0.2, 10.0
 #: numbers of the artificial motions beyond the set begin behind those of any set
 FIRST_FURTHER = 10_000
 FURTHER_PASSES = 15  #: in which those are matched: they are many, and nobody compares one with the target
@@ -77,24 +81,38 @@ class Stages:
     longest: float  #: period of the band [s]
     target: MotionTarget  #: of the motions
     wind: float | None  #: the largest utilisation under it; None: it was not asked for
-    screening: Screening
+    resting: Mapping[
+        tuple[str, str], BodyAtRest
+    ]  #: by weight and elevation, those that a bound may show at rest
+    motions: dict[str, GroundMotion]  #: on the floor, and further ones, by the stems of their files
     folder: Path  #: that holds the motions
+    quick: bool = False  #: the set and its repetitions alone
     rows: RunRows = field(default_factory=RunRows)
+    #: factors at which a body first moves
+    moves: dict[tuple[str, str, str, int, float], float] = field(default_factory=dict)
+    began: float  #: when it was asked for [s]
+    load: float  #: wall time over processor time in which the motions were made
 
     @classmethod
-    def of(cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False) -> "Stages":
+    def of(
+        cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False, quick: bool = False
+    ) -> "Stages":
         """For a request whose runs read their motions from a folder.
 
         Args:
+            request, folder: what is asked, and where the motions are.
             allow_outside: take records from outside the folder of the site file.
+            quick: leave out what comes after the repetitions, but of a container that rests in the whole set.
 
         Raises:
             CaseError, MeshError: a record or a container that cannot be used.
         """
+        began, used = time.perf_counter(), time.process_time()
         bodies = bodies_of(request)
         longest = longest_period(bodies)
         ground = ground_motions(request, longest, allow_outside=allow_outside)
         floors = floor_motions(request, ground)
+        load = (time.perf_counter() - began) / max(time.process_time() - used, LEAST_MEASURED_S)
         motions = {
             motion_stem(number, period): motion
             for period, floor in floors.items()
@@ -108,8 +126,12 @@ class Stages:
             longest=longest,
             target=motion_target(request, ground, longest),
             wind=wind_utilisation(bodies, inputs_of(request)),
-            screening=Screening.of(request, motions),
+            resting=at_rest_by_the_bound(request),
+            motions=motions,
             folder=folder,
+            quick=quick,
+            began=began,
+            load=min(max(load, 1.0), MOST_LOAD),
         )
 
     @cached_property
@@ -165,7 +187,7 @@ class Stages:
 
         limits = self.request.limits
         failing = {
-            factor: [group for group in groups_of(own) if RuleFound.of([group]).fails(limits)]
+            factor: [group for group in groups_of(own) if rule_of([group]).fails(limits)]
             for factor, own in by_factor.items()
         }
         fell = {
@@ -187,42 +209,39 @@ class Stages:
             for sign in self.signs
         ]
 
-    def of_the_answer(self, runner: Runner, *, quick: bool = False) -> Iterator[Sequence[RunKey]]:
+    def of_the_answer(self, runner: Runner) -> Iterator[Sequence[RunKey]]:
         """The set, its repetitions and the further motions: all that the answer rests on but the deciding runs.
 
-        Args:
-            runner: lets its workers make the further motions.
-            quick: none of these, unless the container rests in the whole set, where they cost next to nothing.
+        The workers of the runner make the further motions.
         """
         yield self._left(self.of_set())
         groups = governing_groups(groups_of(self.rows.of(self.of_set())))
         yield self._left(self.repeated(groups))
-        if not self.has_further(quick=quick):
+        if not self.has_further:
             return
         further = self.of_further(groups, self.request.motions.further)
-        self._make(runner, [key for key in further if key.stem not in self.screening.motions])
+        self._make(runner, [key for key in further if key.stem not in self.motions])
         if not runner.stop():
             yield self._left(further)
 
-    def has_further(self, *, quick: bool) -> bool:
-        """Whether further motions are computed: not with `quick`, unless the container rests in the whole set."""
-        return self.rests or not quick
+    @property
+    def has_further(self) -> bool:
+        """Whether further motions are computed: with `quick` only where the whole set rests, and they cost little."""
+        return self.rests or not self.quick
 
     @property
     def rests(self) -> bool:
         """Whether no run of the set need be computed."""
-        return all(self.screening.at_rest(key) for key in self.of_set())
+        return all(self.at_rest(key) for key in self.of_set())
 
-    def most_runs(self, *, quick: bool = False, scan: bool = True) -> tuple[int, int]:
+    def most_runs(self, *, scan: bool = True) -> tuple[int, int]:
         """Runs of the set that must be computed, and of all stages at most, without the deciding ones.
 
-        Args:
-            quick: the set and its repetitions alone.
-            scan: with the set at other factors.
+        `scan`: with the set at other factors.
         """
 
         def left(keys: Sequence[RunKey]) -> int:
-            return sum(not self.screening.at_rest(key) for key in keys)
+            return sum(not self.at_rest(key) for key in keys)
 
         own = left(self.of_set())
         masses = len({mass for mass, _ in self.request.variants})
@@ -230,7 +249,7 @@ class Stages:
         of_a_mass = len(self.of_set()) // (of_a_group * masses)  # groups, of which two govern
         pairs = min(2, of_a_mass) * masses if own else 0
         most = own + pairs * of_a_group * len(REPETITIONS)
-        if quick:
+        if self.quick:
             return own, most
         most += pairs * self.request.motions.further * len(self.signs)
         if scan:
@@ -240,7 +259,7 @@ class Stages:
     @property
     def most_scanned(self) -> int:
         """Runs of the set at other factors that must be computed at most."""
-        return sum(not self.screening.at_rest(key) for factor in SCANNED for key in self.scanned(factor))
+        return sum(not self.at_rest(key) for factor in SCANNED for key in self.scanned(factor))
 
     def of_the_margin(self) -> Iterator[Sequence[RunKey]]:
         """The set at other factors, up to the first at which a run overturns, and between.
@@ -251,36 +270,55 @@ class Stages:
         for factor in SCANNED:
             if factor > 1.0:
                 own = (run for key, run in self.rows.runs.items() if (key.stage, key.factor) == before)
-                tally = RuleFound.of(groups_of(own))
+                tally = rule_of(groups_of(own))
                 if tally.overturned + tally.invalid or (self.rests and tally.fails(self.request.limits)):
                     break
                 before = SCAN, factor
             yield self._left(self.scanned(factor))
         yield self._left(self.refined(self.rows.runs))
 
+    def moves_at(self, key: RunKey) -> float | None:
+        """The factor on the motion of a run at which its body first moves; None where that is not known."""
+        body, motion = self.resting.get((key.mass, key.elevation)), self.motions.get(key.stem)
+        if body is None or motion is None:
+            return None
+        what = key.mass, key.elevation, key.stem, key.vertical_sign, key.mu_static
+        if what not in self.moves:
+            upward = 0.0 if motion.vertical is None else key.vertical_sign * motion.vertical
+            self.moves[what] = body.moves_at(motion.horizontal, upward, key.mu_static)
+        return self.moves[what]
+
+    def used(self, key: RunKey) -> float | None:
+        """The factor on the motion of a run over that at which its body first moves; None where that is not known."""
+        factor = self.moves_at(key)
+        return None if factor is None else key.factor / factor if factor > 0.0 else math.inf
+
+    def at_rest(self, key: RunKey) -> bool:
+        """Whether a run need not be computed."""
+        used = self.used(key)
+        return used is not None and used < KEPT
+
     @property
     def first_movement(self) -> float | None:
         """Factor on the motions at which a rigid body first uplifts or slips; None where that is not known."""
-        factors = [self.screening.moves_at(key) for key in self.of_set()]
+        factors = [self.moves_at(key) for key in self.of_set()]
         return None if None in factors else min(factor for factor in factors if factor is not None)
 
-    def beside(self, confirmed: Sequence[ConfirmedRun] = (), left_out: str = "") -> Beside:
-        """What the answer rests on beside the runs: the deciding runs repeated, stages that were left out, in words."""
+    def beside(self) -> dict[str, Any]:
+        """What the answer rests on beside the runs, as `answer_of` takes it."""
         in_plane_only = ON_A_SLOPE if self.request.container.floor.slope_percent else ""
         if not in_plane_only and self._lacks_second:
             in_plane_only = NO_SECOND
         if not self.request.motions.second_component:
             in_plane_only = ""
-        return Beside(
-            confirmed=confirmed,
-            wind=self.wind,
-            left_out=left_out,
-            two_directions=self._two_directions(),
-            slips_of_further=self._slips_of_further(),
-            in_plane_only=in_plane_only,
-            still=sum(key.stage == SET for key in self.rows.still),
-            moves_at=self.first_movement,
-        )
+        return {
+            "wind": self.wind,
+            "two_directions": self._two_directions(),
+            "slips_of_further": self._slips_of_further(),
+            "in_plane_only": in_plane_only,
+            "still": sum(key.stage == SET for key in self.rows.still),
+            "moves_at": self.first_movement,
+        }
 
     @property
     def _lacks_second(self) -> bool:
@@ -341,7 +379,7 @@ class Stages:
         for key in self.rows.runs:
             what = key.motion, key.building_period_s, key.mu_static, key.mu_kinetic
             if key.stage == FURTHER and what not in slips:
-                motion = self.screening.motions[key.stem]
+                motion = self.motions[key.stem]
                 slips[what] = largest_slip(motion, what[2:], gravity=box.gravity_m_s2)
         return slips
 
@@ -349,7 +387,7 @@ class Stages:
         """Those that must be computed, by their motions; those at rest by the rigid bound are noted."""
         left = []
         for key in self.rows.missing(keys):
-            if self.screening.at_rest(key):
+            if self.at_rest(key):
                 self.rows.rest(key)
             else:
                 left.append(key)
@@ -371,7 +409,7 @@ class Stages:
             pools = runner.workers_of(self.request.heading.model, len(keys))
             for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
                 for number, motion in zip(chunk, made, strict=True):
-                    self.screening.motions[motion_stem(number, period, FURTHER)] = motion
+                    self.motions[motion_stem(number, period, FURTHER)] = motion
 
 
 def further_motions(

@@ -72,14 +72,7 @@ NEEDED = {
         "vertical_corner_periods_s",
     ),
 }
-OF_SPECTRA = (
-    "type",
-    "ground",
-    "zone",
-    "reference_acceleration_m_s2",
-    *NEEDED["custom"][1:],
-    *NEEDED["second-generation"][:3],
-)
+OF_SPECTRA = ("type", "ground", "zone", *NEEDED["custom"], *NEEDED["second-generation"][:3])
 WHY = {
     "vertical_ratio": "a_vg/a_g, which the annex in force gives",
     "zone": "1, 2 or 3",

@@ -7,17 +7,18 @@ about what was tried: nothing is known between the values.
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby, pairwise, takewhile
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from fem.html.page import text_of
 from fem.results.figures import SLIPPED
 from fem.results.outcome import NOT_STANDING, Ending, ending_of
 from fem.runtime.units import MILLIMETRES, plain_number
 from fem.study.axes import (
-    MOTION_FILE,
     Axis,
     axis_name,
     in_words,
@@ -190,39 +191,20 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
 
 def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") -> str:
     """An answer in words: "stood in every motion tried up to 0.42 g (slid up to 50 mm); first overturned at 0.44 g"."""
-    every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
-    limit = "" if answer.limit_slip is None else slip_in_words(answer.limit_slip)
-    overturned = (
-        f"slid beyond {limit}" if answer.slid else "destroyed a corner" if answer.invalid else "overturned"
-    )
     stood, fell = ends_in_words(answer, axis)
-    slid, least = answer.stood_slip or 0.0, MILLIMETRES.least
-    there = f" (slid up to {slip_in_words(slid)})" if slid >= least else ""
-    noted = [f"first to overturn: {answer.fell}"] * bool(answer.fell)
-    if answer.slip is not None:
-        noted.append("no slip there" if answer.slip < least else f"slip there {slip_in_words(answer.slip)}")
-    noted += [f"with {where}"] * bool(where)
-    fell_so = f"{fell} ({', '.join(noted)})" if noted else fell
-    at_once = not stood and not answer.failed
-    if rising:
-        stands = f"{every} up to {stood}{there}"
-        falls = f"{overturned} at the least tried," if at_once else f"first {overturned} at"
-    else:
-        stands = f"{every} from {stood} on{there}"
-        falls = f"{overturned} even at the largest tried," if at_once else f"{overturned} up to"
-    parts = [stands] * bool(stood) + [f"{falls} {fell_so}"] * bool(fell)
-    parts = parts if rising else parts[::-1]
-    none = f"none overturned or slid beyond {limit}" if limit else "none overturned"
-    parts.append(none if stood and not fell else "")
-    ranges = {
-        "stood again at" if rising else "stood below that at": answer.stood_again,
-        "no outcome at": answer.failed,
-        "unsure at": answer.unsure,
-    }
-    parts += [
-        f"{words} {ranges_in_words(stretches, axis)}" for words, stretches in ranges.items() if stretches
-    ]
-    return "; ".join(filter(None, parts))
+    return text_of(
+        "sweep_answer.txt.j2",
+        answer=answer,
+        rising=rising,
+        where=where,
+        stood=stood,
+        fell=fell,
+        of_motion=axis.key.startswith("motion."),
+        limit="" if answer.limit_slip is None else slip_in_words(answer.limit_slip),
+        least=MILLIMETRES.least,
+        slip=slip_in_words,
+        ranges=partial(ranges_in_words, axis=axis),
+    )
 
 
 def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[str, str]:
@@ -365,13 +347,6 @@ class HalfPoint:
     few_to: float | None  #: up to here the upper end of the interval is at most the given probability
 
 
-def _draws_in_words(result: EnsembleResult) -> str:
-    """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
-    draws, motions = f"{result.draws} draws", len(result.random.get(MOTION_FILE, ()))
-    of_motions = f"{motions} motions" if motions == result.draws else f"{draws} of {motions} motions"
-    return of_motions if motions else draws
-
-
 def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     """The answer along a strength, else along the axis with the most values.
 
@@ -392,29 +367,35 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
     for point in sorted(result.points, key=lambda row: row[axis.key], reverse=not rising):
         lines[tuple(point[other.key] for other in others)].append(point)
-    rows, halves = [], []
-    for _, points in sorted(lines.items()):
-        crossing = _half_point(axis, points)
-        halves.append(_half(result, axis, points, crossing, rising=rising))
+    says = partial(
+        text_of,
+        "ensemble_answer.txt.j2",
+        result=result,
+        axis=axis,
+        rising=rising,
+        fell=falling_in_words(result.limit_slip_m, past=True),
+        words=lambda value: in_words(axis, [value]),
+        interval=partial(interval_in_words, axis, rising=rising),
+    )
+    rows, sorted_lines = [], [points for _, points in sorted(lines.items())]
+    for points in sorted_lines:
+        found = _half_point(axis, points)
         # how far the draws slid that stood, at the points at which fewer than half did not
         before = takewhile(lambda point: (point["probability"] or 0.0) < HALF, points)
-        before_half = points if crossing.value is None else before
-        slip = max((point.get(SLIPPED) or 0.0 for point in before_half), default=0.0)
-        few, slid = _few(result, axis, crossing.few_to, rising=rising), MILLIMETRES.least
-        slips = f"; those that stood there slid up to {slip_in_words(slip)}" if slip >= slid else ""
-        rows.append(AnswerRow(point=points[0], found=crossing, sentence=f"{halves[-1]}{few}{slips}"))
+        before_half = points if found.value is None else before
+        slid = max((point.get(SLIPPED) or 0.0 for point in before_half), default=0.0)
+        slip = slip_in_words(slid) if slid >= MILLIMETRES.least else ""
+        sentence = says(points=points, found=found, few_to=found.few_to, where="", slip=slip)
+        rows.append(AnswerRow(point=points[0], found=found, sentence=sentence))
     safest = min if rising else max
     reached = [(row.found.value, k) for k, row in enumerate(rows) if row.found.value is not None]
     few_to = [row.found.few_to for row in rows if row.found.few_to is not None]
     sentence = rows[0].sentence
-    if others and reached:
-        _, first = safest(reached)
-        sentence = f"{halves[first]}, first with {place_in_words(others, rows[first].point)}"
-    elif others:
-        fell = falling_in_words(result.limit_slip_m, past=True)
-        sentence = f"fewer than half of {_draws_in_words(result)} {fell} at every point"
-    if others and len(few_to) == len(rows):
-        sentence += _few(result, axis, safest(few_to), rising=rising)
+    if others:
+        _, k = safest(reached) if reached else (None, 0)
+        first, where = (rows[k].found, place_in_words(others, rows[k].point)) if reached else (None, "")
+        few = safest(few_to) if len(few_to) == len(rows) else None
+        sentence = says(points=sorted_lines[k], found=first, few_to=few, where=where, slip="")
     return StudyAnswer(
         axis=axis, rising=rising, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
     )
@@ -452,47 +433,3 @@ def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:
     low, high = ("" if end is None else in_words(axis, [end]) for end in (crossing.low, crossing.high))
     words = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
     return " to ".join(words if rising else reversed(words))
-
-
-def _half(
-    result: EnsembleResult, axis: Axis, points: Sequence[Row], crossing: HalfPoint, *, rising: bool
-) -> str:
-    half = f"half of {_draws_in_words(result)} {falling_in_words(result.limit_slip_m, past=True)}"
-    if crossing.at_once:
-        end = "least" if rising else "largest"
-        return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"
-    if crossing.value is None:
-        most = max(points, key=lambda point: point["probability"] or 0.0)
-        share, there = f"{100.0 * (most['probability'] or 0.0):.2g} %", in_words(axis, [most[axis.key]])
-        return f"fewer than {half} at every value tried, at most {share} at {there}"
-    interval, there = interval_in_words(axis, crossing, rising=rising), in_words(axis, [crossing.value])
-    return f"{half} at {there} ({100.0 * result.confidence:g} % interval {interval})"
-
-
-def _few(result: EnsembleResult, axis: Axis, few_to: float | None, *, rising: bool) -> str:
-    if few_to is None:
-        return ""
-    few = in_words(axis, [few_to])
-    reach = f"up to {few}" if rising else f"from {few} on"
-    return f"; at most {100.0 * result.probability:g} % {reach}, by the upper end of the interval"
-
-
-def fragility_lines(result: EnsembleResult) -> Iterator[tuple[str, str]]:
-    """Where the curve falls, and the lognormal curve: name and words; nothing where there is no curve."""
-    fragility = result.fragility
-    if fragility is None:
-        return
-    for fall in fragility.falls:
-        words = "from {probability_weaker:.3f} at {weaker:g} to {probability_stronger:.3f} at {stronger:g}"
-        yield "falls", f"{words.format(**fall)}: a stronger motion overturns less often"
-    fitted = fragility.lognormal
-    if fitted is None:
-        yield "lognormal", f"none: {fragility.no_lognormal}"
-        return
-    median = f"median {fitted.median:.3g} {result.axes[0].unit}".rstrip()
-    fit = "" if fitted.adequate else "; the lognormal curve does not describe the counts"
-    yield (
-        "lognormal",
-        f"{median}, deviation {fitted.deviation:.3g}; misses {fitted.levels_missed} of {fitted.levels} intervals of "
-        f"{100.0 * result.confidence:g} % ({fitted.missed_by_chance} by chance){fit}",
-    )

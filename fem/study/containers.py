@@ -61,8 +61,6 @@ class ContainerCache:
         #: containers that serve others as well, with their cases: rigid ones share all but their mass, those of a row
         #: all but their gaps
         self._alike: dict[Hashable, tuple[Case, Future[Container]]] = {}
-        #: the one asked for last, with its case: most cases of a study differ in what a container does not depend on
-        self._last: tuple[Case, Container] | None = None
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
@@ -71,19 +69,18 @@ class ContainerCache:
         Raises:
             CaseError, MeshError: bad input.
         """
-        with self._lock:
-            if self._last is not None and _from_the_same_tables(case, self._last[0]):
-                return self._last[1]
         key = container_key(case)
-        alike = container_key(case, mass=case.solver.model != "rigid", gaps=False)
         with self._lock:
             earlier = self._held.pop(key, None)
             promise = earlier or Future[Container]()
             self._held[key] = promise  # the one used last is last
-            own, first = self._alike.setdefault(alike, (case, promise))
-            for held in (self._held, self._alike):
-                while len(held) > self._most:
-                    del held[next(iter(held))]
+            while len(self._held) > self._most:
+                del self._held[next(iter(self._held))]
+            if earlier is None:
+                alike = container_key(case, mass=case.solver.model != "rigid", gaps=False)
+                own, first = self._alike.setdefault(alike, (case, promise))
+                while len(self._alike) > self._most:
+                    del self._alike[next(iter(self._alike))]
         if earlier is None:
             try:
                 unlike = first is promise or first.exception() is not None
@@ -91,10 +88,7 @@ class ContainerCache:
                 promise.set_result(built)
             except BaseException as error:
                 promise.set_exception(error)
-        container = promise.result()
-        with self._lock:
-            self._last = case, container
-        return container
+        return promise.result()
 
     def recovery_of(self, model: Model) -> Recovery:
         """What recovers the stresses of a model's container; built once a container."""
@@ -102,17 +96,6 @@ class ContainerCache:
         if recovery is None:
             recovery = self._recoveries[model.container] = recovery_of(model)
         return recovery
-
-
-def _from_the_same_tables(case: Case, other: Case) -> bool:
-    """Whether two cases have the very tables, not only equal ones, of which `container_key` is made."""
-    tables = ("container", "support", "solver", "stop", "tie", "neighbour")
-    return (
-        all(getattr(case, name) is getattr(other, name) for name in tables)
-        and case.gravity_m_s2 == other.gravity_m_s2
-        and case.folder == other.folder
-        and case.output.stop_when_overturned == other.output.stop_when_overturned
-    )
 
 
 #: normal penalties, by container and without its modes

@@ -59,9 +59,8 @@ class RandomQuantity:
 
     key: str  #: dotted; `free.NAME` for one that only derived keys refer to
     spread: Distribution = EVEN
-    choices: Axis | None = (
-        None  #: the list, such as a set of motions or the signs of one, and what follows each
-    )
+    #: the list, such as a set of motions or the signs of one, and what follows each
+    choices: Axis | None = None
 
     @property
     def relative(self) -> bool:

@@ -87,9 +87,8 @@ class Study(Generic[ResultT]):
     #: computes what is missing of it; the status of the result says how far it came
     compute: Callable[[ResultFolder, Runner], ResultT]
     texts: Mapping[str, str]  #: files that say what is asked, by name
-    subject: str  #: of a refusal, such as "the ensemble"
-    way_out: str  #: where the disk has too little room
-    progress: Callable[[Path], str]  #: of an unfinished one in a folder, in words; "" where nothing is lost
+    #: of an unfinished one in a folder, in words; "" where nothing is lost
+    progress: Callable[[Path], str] = lambda place: "what was computed so far"
     size: float = 0.0  #: of its folder, besides `BYTES_BESIDE` [bytes]
     cases: Sequence[Case] = ()  #: whose mesh and motions its folder keeps
     motions: Sequence[Case] = ()  #: likewise; their motions were read
@@ -125,7 +124,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         if progress := study.progress(folder):
             place.refuse_unfinished(progress)
         place.require_same_program()
-        place.require_room(study.size + BYTES_BESIDE, study.subject, study.way_out)
+        place.require_room(study.size + BYTES_BESIDE, f"the {kind.name}", "take fewer runs")
         mark = {kind.request: study.request}
         place.begin(study.begun.to_json() | mark, study.texts, keep=place.earlier is not None)
         for case in study.cases:

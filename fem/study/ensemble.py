@@ -66,9 +66,6 @@ def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOpt
             compute=partial(_compute, ensemble, motions, begun),
             texts={"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)},
             size=2 * rows + points + table_bytes(len(motions), OF_A_MOTION) + files,
-            subject="the ensemble",
-            way_out="take fewer draws",
-            progress=lambda folder: "its draws so far",
         )
         return run_study(study, folder, **options)
 

@@ -25,17 +25,23 @@ from fem.case.tables.all_tables import TABLES
 from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_document, toml_value
 from fem.case.validation import CaseError, known_keys, quantity_of
+from fem.html.page import text_of
 from fem.model.geometry import build_container
-from fem.model.motion import build_motions, peaks_in_run
+from fem.model.motion import build_motions, motion_result, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.records.source import decoded
 from fem.records.table import UserTable, number_in
 from fem.results.disk import table_bytes
-from fem.results.figures import RUN_COLUMNS, SLIPPED, TURNED
+from fem.results.figures import FIGURES, RUN_COLUMNS, SCALARS, SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
-from fem.results.outcome import COUNTED_AS, ending_of
+from fem.results.outcome import COUNTED_AS, Outcome, ending_of
+from fem.results.run_result import RunResult, Verdict
+from fem.run.card import card_of
+from fem.run.card import line as line_of_card
+from fem.run.described import sides_of
 from fem.run.expected import expected_s, expected_words, say_expected
+from fem.run.verdict import place_of
 from fem.runtime.identity import command_line
 from fem.runtime.terminal import one_line
 from fem.runtime.user_files import read_regular
@@ -54,10 +60,21 @@ from fem.study.driver import (
     runner_of,
 )
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
-from fem.study.runner import CHECKED, Row, Runner, check_chunk
+from fem.study.runner import CARD_LINES, CHECKED, Row, Runner, boxes_in, check_chunk
 from fem.study.table import Columns, line_of, plain_text
 
 REFUSED = "refused"  #: status of a row that cannot be computed
+LEAVES, NONE = "leaves its place", "has no outcome"
+#: what a container may do, the gravest first, in the words of `card.txt.j2`
+GRAVEST: tuple[str, ...] = (
+    "overturns",
+    "destroys a corner",
+    NONE,
+    LEAVES,
+    "slides, rocks and stands",
+    "slides and stands",
+)
+GRAVEST += ("rocks and stands", "leaves the floor for moments and stands", "rests")
 #: columns of a run, as in its log
 OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
 STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
@@ -69,8 +86,11 @@ COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int, "side": str}
 FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: of a row of the list
 ROW_COLUMNS = {"row": int, "line": int, "name": str, "count": int, "tag": str, "command": str}
+#: in a word the gravest of what it does; the card of its governing run
+ROW_COLUMNS |= {"does": str, "card": str}
 #: behind the columns of the list
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
+RESULT_COLUMNS["first_line"] = str
 OF_A_TAG = {"tag": str, "containers": int, "counts": dict[str, int], "margin": float}
 
 
@@ -83,7 +103,12 @@ class HallResult(StudyResult):
         "table": RESULT_COLUMNS | ROW_COLUMNS,
         "tags": OF_A_TAG,
     }
-    needed: ClassVar[frozenset[str]] = frozenset({"status", *ROW_COLUMNS, *OF_A_TAG}) - {"command", "margin"}
+    needed: ClassVar[frozenset[str]] = frozenset({"status", *ROW_COLUMNS, *OF_A_TAG}) - {
+        "command",
+        "margin",
+        "does",
+        "card",
+    }
     hall: str
     case: str
     asked: str  #: hash of what is computed
@@ -118,6 +143,14 @@ class HallResult(StudyResult):
     def ranked(self) -> list[dict[str, Any]]:
         """The rows that were computed, the weakest first."""
         return sorted((row for row in self.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many containers do what, the gravest first."""
+        counts = Counter[str]()
+        for row in self.ranked:
+            counts[row.get("does") or row["outcome"]] += row["count"]
+        return {word: counts[word] for word in (*GRAVEST, *sorted({*counts} - {*GRAVEST})) if counts[word]}
 
     @property
     def not_computed(self) -> list[dict[str, Any]]:
@@ -294,7 +327,7 @@ def _value(key: str, text: str) -> Any:
 
 TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
-CHECK_COLUMNS = {"container": int} | CHECKED
+CHECK_COLUMNS = {"container": int} | CHECKED | {"card": str}
 MOST_RUNS = 200_000  #: unless it is forced
 MOST_NAMED = 20  #: bad rows in a refusal
 OF_A_ROW = 3e-3  #: processor time of checking a row [s]
@@ -302,7 +335,8 @@ OF_A_ROW = 3e-3  #: processor time of checking a row [s]
 #: least so many
 SHARE, LEAST = 0.1, 30
 Checks = Literal["weakest", "all", "none"]
-WORST_FIRST = ("overturned", "invalid", "failed", "stood")  #: what a container counts as
+MOVED = ("rested", "moved")
+WORST_FIRST = ("overturned", "invalid", "failed", "left", *reversed(MOVED))  #: what a container counts as
 ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
 
@@ -405,10 +439,12 @@ def _ending_in(row: Row) -> str:
 def weakness(row: Row) -> tuple[float, ...]:
     """Smaller for the worse: by what it counts as, by margin, by rotation, by the static rule, by slip.
 
-    Of a run alone neither margin nor static rule are known.
+    Of a run alone neither margin nor static rule are known. What stands, but beyond its `place_m`, has left its place.
     """
     ending, margin = _ending_in(row), row.get("margin") or row.get("margin_tried_to")
     turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
+    if ending == "stood":
+        ending = "left" if slip > row.get("place_m", math.inf) else MOVED[row["outcome"] != Outcome.REST]
     if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
     return WORST_FIRST.index(ending), margin is None, margin or 0.0, -turned, -static, -slip
@@ -484,9 +520,6 @@ def run_hall(
             begun=begun,
             compute=partial(_compute, hall, begun),
             texts={"list.csv": file.table.text, "base.toml": toml_document(base.given())},
-            subject=f"the hall ({begun.distinct} containers)",
-            way_out="take fewer rows",
-            progress=lambda results: "what was computed so far",
             again=lambda results, finished: finished if finished.listed == begun.listed else None,
             size=2.0 * table_bytes(len(hall.items), len(RUN_COLUMNS)),
             cases=[] if pairs else [base],
@@ -521,7 +554,10 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     results.write(RUNS, runs.table())
     results.write(CHECKS, checks.table())
     for item, row in found:
+        card = row["card"]
         row |= checks.row(item)
+        row["card"] = row.get("card") or card
+        row["first_line"] = row["card"].partition(CARD_LINES)[0]
     for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
         container["rank"] = rank
     return _written(results, begun, hall, found)
@@ -534,12 +570,30 @@ def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tup
     """
     rows, motions, sides = [*map(runs.row, items)], len(hall.keys), list[tuple[Item, Row]]()
     for first in range(0, len(items), motions):
-        worst = min(range(first, first + motions), key=lambda place: weakness(rows[place]))
-        case = hall.make.case(items[worst])
-        peaks = peaks_in_run(case, *build_motions(case))
-        ruling = static_checks_of(case, build_container(case), *peaks).ruling.to_result()
-        row = {name: rows[worst][name] for name in OF_A_RUN} | {"side": "depth" if first else "width"}
-        sides.append((items[worst], row | {name: getattr(ruling, name) for name in STATIC}))
+        case = hall.make.case(items[first])
+        mesh = build_container(case)
+        place, whose = place_of(case, mesh.width)
+        own = [row | {"place_m": place} for row in rows[first : first + motions]]
+        worst = min(range(motions), key=lambda number: weakness(own[number]))
+        item, row = items[first + worst], {name: own[worst][name] for name in (*OF_A_RUN, "place_m")}
+        row["side"] = "depth" if first else "width"
+        case = hall.make.case(item) if worst else case
+        floor = build_motions(case)
+        static = static_checks_of(case, mesh, *peaks_in_run(case, *floor)).to_result()
+        said = {name: row[name] for name in SCALARS if name in Verdict.__dataclass_fields__}
+        verdict = Verdict(**said, boxes=boxes_in(row), place_m=place, place_is=whose)
+        run = RunResult(
+            status=row["status"],
+            static=static,
+            sides=None if case.container.mesh_file else sides_of(mesh.width, case.container.depth_m, static),
+            motion=motion_result(case, *floor),
+            verdict=verdict,
+            error=row["reason"],
+        )
+        row |= {"does": NONE, "card": ""}
+        if verdict.outcome is not None:
+            row |= {"does": line_of_card(run, "word"), "card": CARD_LINES.join(card_of(run))}
+        sides.append((item, row | {name: getattr(static.ruling, name) for name in STATIC}))
     item, row = min(sides, key=lambda side: weakness(side[1]))
     rows = [min(rows[motion::motions], key=weakness) for motion in range(motions)]
     if names := [pair.name for pair in hall.motions]:
@@ -566,7 +620,7 @@ def _written(
             item, found_so = found[listed.container]
             found_so = found_so | {"command": hall.command(item, listed.values)}
         row = {"row": number} | {name: getattr(listed, name) for name in LISTED}
-        row |= {name: found_so.get(name) for name in (*RESULT_COLUMNS, "command")}
+        row |= {name: found_so.get(name) for name in (*RESULT_COLUMNS, "command", "does", "card")}
         table.append(row)
         ending = _ending_in(row)
         outcomes[row["outcome"] or ending] += row["count"]
@@ -593,22 +647,8 @@ def _written(
     stated = f"sep={separator}\n" * (separator not in ",;\t")
     results.write(TABLE, stated + "".join(f"{line}\n" for line in lines))
     results.remove("report.html")  # the command makes another
-    return replace(result, answer=_answer_of(result))
-
-
-def _answer_of(result: HallResult) -> str:
-    """How many containers did what, and which is the weakest, in one sentence."""
-    counts = dict(result.outcomes)
-    refused = counts.pop(REFUSED, 0)
-    overturned, invalid, failed = (counts.get(word, 0) for word in ("overturned", "invalid", "failed"))
-    under = f" under at least one of {len(result.motions)} motions" if len(result.motions) > 1 else ""
-    words = f"{overturned or 'none'} of {result.containers - refused} containers overturned"
-    words += under if overturned else ""
-    words += f"; {invalid} destroyed a corner, which is not valid" if invalid else ""
-    words += f"; {failed} have no outcome" if failed else ""
-    words += f"; {result.refused} row{'s were' if result.refused != 1 else ' was'} refused" if refused else ""
-    weakest = result.ranked[0]
-    words += f"; the weakest is {weakest['name']}"
-    if not overturned and (margin := weakest["margin"]) is not None:
-        words += f", which overturns from {margin:.3g} times its motion on"
-    return words
+    left = [row for row in result.ranked if row["does"] == LEAVES]
+    farthest = max(left, key=itemgetter(SLIPPED), default=None)
+    slid = farthest and FIGURES[SLIPPED].unit.text(farthest[SLIPPED], figures=2)
+    answer = text_of("hall_answer.txt.j2", result=result, left=left, farthest=farthest, slid=slid)
+    return replace(result, answer=answer)

@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fem.figures import style
-from fem.figures.heat_map import Look, MapAxis, Panel, draw_heat_map, value_label
+from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
 from fem.figures.paper_marks import LABEL, marks_of
 from fem.html.units import rounded
 from fem.results.figures import SLIPPED, TURNED
@@ -34,29 +34,16 @@ from fem.study.fragility import Fragility, PointRow
 from fem.study.sweep_table import RATIOS, SweepTable
 
 OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": style.WHITE}
-#: shares of a cell and its copies that overturn: up to so much each, its colour, its grey; their brightness falls, so
-#: that the order is seen without colours, too
-_SHARES = (
-    ("none overturns", 0.0, "#DDEEF8", style.WHITE),
-    ("up to a quarter", 0.25, "#F5D878", "#DDDDDD"),
-    ("up to three quarters", 0.75, "#EE9A3A", "#AAAAAA"),
-    ("more", 1.0 - 1e-9, "#A6401B", style.GREY),
-    ("all overturn", 1.0, style.BLACK, style.BLACK),
-)
-SHARES = {word: most for word, most, _, _ in _SHARES}
-SHARE_COLOURS = {word: colour for word, _, colour, _ in _SHARES} | {"no outcome": style.WHITE}
-PRINTED_SHARES = {word: grey for word, _, _, grey in _SHARES} | {"no outcome": style.WHITE}
-GREYS = (style.WHITE, "#DDDDDD", "#EEEEEE", "#DDDDDD", "#AAAAAA", style.BLACK, "#EEEEEE")
-PRINTED_OUTCOMES = dict(zip(style.STATE_COLOURS, GREYS, strict=True))
-PRINTED_OUTCOMES |= {"failed": style.WHITE, "": style.WHITE}
-HATCHES = {
-    Outcome.SLIDE: "---",
-    Outcome.HOP: "..",
-    Outcome.ROCK: "///",
-    Outcome.SLIDE_ROCK: "xxx",
-    Outcome.INVALID: "**",
-    "failed": "oo",
+#: shares of a cell and its copies that overturn: up to so much each, and its colour; their brightness falls, so that
+#: the order is seen without colours, too
+SHARES = {
+    "none overturns": (0.0, "#DDEEF8"),
+    "up to a quarter": (0.25, "#F5D878"),
+    "up to three quarters": (0.75, "#EE9A3A"),
+    "more": (1.0 - 1e-9, "#A6401B"),
+    "all overturn": (1.0, style.BLACK),
 }
+SHARE_COLOURS = {word: colour for word, (_, colour) in SHARES.items()} | {"no outcome": style.WHITE}
 Part = Callable[[NDArray[Any]], NDArray[Any]]  #: from a column (n_cells,) to a panel
 MOST_PANELS = 12
 WORDS_OF_SHARES = "Share of a cell's variations that do not stand"
@@ -74,7 +61,7 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
         figures = {"rotation": _rotation_curve(table)}
     else:
         loose = ("joint_slip",) if np.isfinite(table.columns.get(JOINT_SLIP, np.nan)).any() else ()
-        kinds = ("outcome", "outcome_print", "rotation", "slip", *loose)
+        kinds = ("outcome", "rotation", "slip", *loose)
         answer = sweep_answer(table, folder.parent) if table.info.threshold else None
         boundary = None if answer is None else safe_boundary(table, answer, choice)
         figures = {"boundary": boundary} if boundary else {}
@@ -89,24 +76,25 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
 
     Args:
         table: of the sweep, which has two axes or more.
-        kind: outcome (the share of copies that overturns, and the outcome) | outcome_print (the same without colours)
-            | rotation (largest, over the slenderness angle) | slip (largest) | joint_slip (largest between loose
-            boxes); the last three where the container stands.
+        kind: outcome (the share of copies that overturns, and the outcome) | rotation (largest, over the slenderness
+            angle) | slip (largest) | joint_slip (largest between loose boxes); the last three where it stands.
         choice: of axes that the sweep has, and of values on them.
     """
     share, unsure = shares_of(table), table.columns.get("unsure")
     #: words, what joins them to a panel's name, values, look
-    layers: list[tuple[str, str, NDArray[Any], Look | None]]
+    layers: list[tuple[str, str, NDArray[Any], Mapping[str, str] | None]]
     look: dict[str, Any]
-    if kind.startswith("outcome"):
-        printed, unsure = kind == "outcome_print", None
+    if kind == "outcome":
+        unsure = None
         outcome = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome])
-        drawn = Look(colours=PRINTED_OUTCOMES, hatches=HATCHES) if printed else Look(colours=OUTCOME_COLOURS)
-        title, look, layers = "Outcome", {"colours": {}, "columns": 3}, [("Outcome", "; ", outcome, drawn)]
+        title, look, layers = (
+            "Outcome",
+            {"colours": {}, "columns": 3},
+            [("Outcome", "; ", outcome, OUTCOME_COLOURS)],
+        )
         if share is not None:  # beside that of the outcomes
             title, look["columns"] = "Does it overturn?", 2
-            drawn, words = Look(colours=PRINTED_SHARES if printed else SHARE_COLOURS), WORDS_OF_SHARES
-            layers = [(words, "\n", share, drawn), *layers]
+            layers = [(WORDS_OF_SHARES, "\n", share, SHARE_COLOURS), *layers]
     else:
         stands = ~np.isin(table.outcome, list(ENDINGS))
         if kind == "rotation":
@@ -236,7 +224,7 @@ def shares_of(table: SweepTable) -> NDArray[Any] | None:
     share = table.columns.get("overturned_share")
     if share is None or not np.isfinite(share).any():
         return None
-    places = np.searchsorted(list(SHARES.values()), np.nan_to_num(share))
+    places = np.searchsorted([most for most, _ in SHARES.values()], np.nan_to_num(share))
     return np.where(np.isfinite(share), places, len(SHARES))
 
 

@@ -7,7 +7,7 @@ status "failed" and the reason; it never has an outcome.
 import math
 import time
 import warnings
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
@@ -21,7 +21,7 @@ from fem.model.geometry import build_container
 from fem.model.model import Model, build_model
 from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
-from fem.results.figures import BOXES, SCALARS
+from fem.results.figures import BOXES, SCALARS, BoxResult
 from fem.results.run_result import Verdict
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
@@ -147,20 +147,36 @@ class NamedStages:
 
     names: Sequence[str]
     reporter: Reporter
-    runs: int = 0  #: that were announced
+    runs: float = 0.0  #: that were announced, by their weights
     last: str = ""  #: stage
-    began: float = field(default_factory=time.perf_counter)  #: [s]
+    spent: float = 0.0  #: on runs [s]
+    since: float | None = None  #: when the runs that are computed began [s]
 
-    def begin(self, name: str, runs: int, *, up_to: bool = False, alike: bool = True) -> None:
-        """A stage of some runs, or of more of them, begins; `alike`: they take as long as those before."""
+    def begin(
+        self, name: str, runs: int, *, up_to: bool = False, weight: float = 1.0, seconds: float = 0.0
+    ) -> None:
+        """A stage of some runs, or of more of them, begins.
+
+        Args:
+            name, runs: of the stage; `up_to`: it may need fewer.
+            weight: of one of them, over those before.
+            seconds: that they take, where these say nothing of it.
+        """
+        self.end()
         if not runs or len(self.names) < 2:
             return
         words = f"{'up to ' * up_to}{runs} {'more ' * (name == self.last)}runs"
-        if self.runs and alike:
-            seconds = runs * (time.perf_counter() - self.began) / self.runs
-            words += f", {clock_time(seconds)} at the rate so far"
+        if seconds:
+            words += f", roughly {clock_time(seconds)}"
+        elif self.runs:
+            words += f", {clock_time(runs * weight * self.spent / self.runs)} at the rate so far"
         self.reporter.message(f"stage {self.names.index(name) + 1} of {len(self.names)}: {name}, {words}")
-        self.runs, self.last = self.runs + runs, name
+        self.runs, self.last, self.since = self.runs + runs * weight, name, time.perf_counter()
+
+    def end(self) -> None:
+        """The runs that were announced are there."""
+        if self.since is not None:
+            self.spent, self.since = self.spent + time.perf_counter() - self.since, None
 
 
 @dataclass
@@ -289,20 +305,27 @@ def _row(status: str, reason: str | None, verdict: Verdict | None = None) -> Row
     return row | {"outcome": None} if status == "failed" else row
 
 
-#: what a repetition adds to a run; empty where there is none. The margin is a factor; where there is none, the largest
-#: one tried
+def boxes_in(row: Mapping[str, Any]) -> tuple[BoxResult, ...] | None:
+    """The boxes of a loose stack, from its row; None of one body."""
+    boxes = zip(*(row[name] or () for name in BOXES), strict=True)
+    return tuple(BoxResult(**dict(zip(BOXES.values(), box, strict=True))) for box in boxes) or None
+
+
+#: what a repetition adds to a run beside its card; empty where there is none. The margin is a factor; where there is
+#: none, the largest one tried
 CHECKED: Columns = {"sure": str, "decided_by": str}
 CHECKED |= dict.fromkeys(("margin", "margin_low", "margin_high", "margin_tried_to"), float)
+CARD_LINES = " | "  #: between the lines of a card in one field
 
 
 def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Repeat some runs with their bands and margins; a row by `CHECKED`, empty of a run without an outcome.
+    """Repeat some runs with their bands and margins: rows by `CHECKED` and cards, empty where there is no outcome.
 
     A run that was stopped has none.
     """
     rows = []
     for item in items:
-        row: Row = dict.fromkeys(CHECKED) | {"status": "failed"}
+        row: Row = dict.fromkeys(CHECKED) | {"status": "failed", "card": None}
         try:
             case = make(item).without_fields()
             run = compute_on(_CONTAINERS.container_of(case), case, WantedChecks())
@@ -310,6 +333,7 @@ def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[R
                 break
             verdict, margin = run.verdict, run.verdict.margin
             row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
+            row["card"] = CARD_LINES.join(verdict.card)
             if margin is not None:
                 tried = margin.largest_tried if margin.factor is None else None
                 row |= zip([*CHECKED][2:], (margin.factor, margin.low, margin.high, tried), strict=True)

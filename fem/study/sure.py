@@ -23,7 +23,7 @@ from fem.case.uncertainty import InputChange, all_changes, as_changed
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.model.support import normal_penalty
-from fem.results.figures import BOXES, FELL_FIRST, RUN_COLUMNS, TURNED, BoxResult, RunFigures, types_of
+from fem.results.figures import BOXES, FELL_FIRST, RUN_COLUMNS, TURNED, RunFigures, types_of
 from fem.results.outcome import Ending, ending_of
 from fem.run.bracket import Change, changes_of, least_width, values_to_try
 from fem.run.solve import chosen_values
@@ -41,7 +41,7 @@ from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.study.axes import Axis, lines_along, shape_of
 from fem.study.containers import container_key
 from fem.study.design import SMALL, Item, Sweep
-from fem.study.runner import Runner
+from fem.study.runner import Runner, boxes_in
 from fem.study.sweep_table import FIGURES, TRIED_COLUMNS
 from fem.study.table import Columns, row_of
 from mesh.container import ContainerMesh
@@ -74,11 +74,10 @@ class RunShown(RunFigures):
 def shown_in(row: Mapping[str, Any]) -> RunShown:
     """What a row shows, by the names of `SHOWN`."""
     kind = ending_of(row["status"], row["outcome"])
-    boxes = zip(*(row[name] or () for name in BOXES), strict=True)
     return RunShown(
         kind=kind,
         outcome=None if kind is Ending.FAILED else row["outcome"],
-        boxes=tuple(BoxResult(**dict(zip(BOXES.values(), box, strict=True))) for box in boxes),
+        boxes=boxes_in(row) or (),
         **{key: row[key] for key in (*FELL_FIRST, *FIGURES)},
     )
 

@@ -67,8 +67,6 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
         compute=partial(_compute, sweep, begun),
         texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
         size=table_bytes(sweep.count, OF_A_CELL),
-        subject=f"the sweep ({sweep.count} cells)",
-        way_out="take fewer values",
         progress=progress,
         again=partial(_again, sweep, begun),
     )

@@ -11,7 +11,7 @@ from small_site import SITE
 from fem.case.validation import CaseError
 from fem.html.page import Page, html_of, text_of
 from fem.seismic.static_rules import peak_rows
-from fem.site.answer import Beside, answer_of
+from fem.site.answer import answer_of
 from fem.site.methods import found_by_runs
 from fem.site.page import shown
 from fem.site.request import load_site
@@ -58,9 +58,7 @@ def in_two_directions(largest, factor, **more):
 def answer(*stages, **beside):
     request = load_site("site").with_value("limits.slip_m", 0.1)  # and 0.5, 0.8 of the angle
     motions = replace(EXAMPLE.set, count=len({run.motion for run in stages[0]}))
-    return answer_of(
-        request, motions, {key_of(run): run for stage in stages for run in stage}, Beside(**beside)
-    )
+    return answer_of(request, motions, {key_of(run): run for stage in stages for run in stage}, **beside)
 
 
 def answered(asked):

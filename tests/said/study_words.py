@@ -10,7 +10,8 @@ import numpy as np
 
 from fem.case.case import load_case
 from fem.case.validation import CaseError
-from fem.response.lasting import PointRecord, PointRow, ResponseResult, lasting_in_words, result_of
+from fem.html.page import _environment
+from fem.response.lasting import PointRecord, PointRow, ResponseResult, result_of
 from fem.response.request import ResponseRequest
 from fem.results.outcome import Ending
 from fem.study.answers import Trial, answer_of, ensemble_answer, is_rising, sentence_of
@@ -113,7 +114,9 @@ def record(row):
 def curve(*points, missing=None):
     """The sentence, and what lasts at each frequency."""
     result = result_of(ResponseResult(asked="", request={}), [record(row) for row in points], missing)
-    return "\n".join([str(result.answer), *(words for _, words in lasting_in_words(result))])
+    lasts = "{% from 'response_words.txt.j2' import lasts %}{{ lasts(at) }}"
+    words = (_environment(autoescape=False).from_string(lasts).render(at=at) for at in result.frequencies)
+    return "\n".join([str(result.answer), *words])
 
 
 def written(name, text):

@@ -1,6 +1,5 @@
 """The page of a verification at a site."""
 
-import json
 import re
 from dataclasses import replace
 
@@ -12,9 +11,8 @@ from site_example import example, write_example
 
 from fem.html.formula import formula_markup
 from fem.results.errors import FolderError
-from fem.results.json_block import to_json
 from fem.site.page import site_report
-from fem.site.result import RESULT_FILE, SiteResult
+from fem.site.result import RESULT_FILE
 
 
 @pytest.fixture(scope="module")
@@ -34,11 +32,6 @@ def words_of(page: str) -> str:
 def test_the_answer_has_its_colour():
     doubted = brief_page('answer="not sure", fulfilled=None, reasons=("A limit lies between.",)')
     assert 'class="answer open"' in doubted and 'class="answer open"' not in brief_page("")
-
-
-def test_the_result_survives_its_file():
-    result, _ = example()
-    assert SiteResult.from_json(json.loads(to_json(result.to_json()))) == result
 
 
 def test_every_motion_run_and_method_is_on_the_page(folder):

@@ -6,7 +6,7 @@ import pytest
 from site_example import RUN
 
 from fem.site.result import SiteRun
-from fem.site.rule import RuleFound, both_directions, governing_groups, groups_of
+from fem.site.rule import governing_groups, groups_of, rule_of
 from fem.site.tables import LimitsTable
 
 LIMITS = LimitsTable(slip_m=0.1)
@@ -39,16 +39,16 @@ def test_of_seven_motions_the_mean_rotation_counts_and_the_largest_slip_of_fewer
 def test_a_mean_within_its_limit_does_not_hide_one_motion_near_overturning():
     low = [replace(RUN, motion=motion, rotation_ratio=0.3) for motion in range(1, 7)]
     for largest, exceeded in ((0.79, []), (0.99, ["single_rotation_ratio"])):
-        found = RuleFound.of(groups_of([*low, replace(RUN, motion=7, rotation_ratio=largest)]))
-        assert found.by_rule.rotation_ratio < 0.41
+        found = rule_of(groups_of([*low, replace(RUN, motion=7, rotation_ratio=largest)]))
+        assert found.rotation_ratio < 0.41
         assert found.exceeded(LIMITS) == exceeded
         assert found.fails(LIMITS) == bool(exceeded)
 
 
 def test_one_slip_beyond_the_clearance_is_not_averaged_away():
     short = [replace(RUN, motion=motion, max_slip_m=0.05) for motion in range(1, 7)]
-    found = RuleFound.of(groups_of([*short, replace(RUN, motion=7, max_slip_m=0.11)]))
-    assert found.by_rule.slip_mean_m < 0.06
+    found = rule_of(groups_of([*short, replace(RUN, motion=7, max_slip_m=0.11)]))
+    assert found.slip_mean_m < 0.06
     assert found.exceeded(LIMITS) == ["slip_m"]
 
 
@@ -87,11 +87,3 @@ def test_groups_differ_in_weight_elevation_friction_and_building():
     }
     for key, value in changes.items():
         assert len(groups_of([RUN, replace(RUN, motion=2), replace(RUN, **{key: value})])) == 2
-
-
-def test_slips_of_both_elevations_add_up_as_vectors_with_100_and_30_per_cent():
-    along = [replace(RUN, max_slip_m=0.03), replace(RUN, mass="empty", max_slip_m=0.02)]
-    across = replace(RUN, elevation="depth", max_slip_m=0.04)
-    ((group, slip),) = both_directions(groups_of([*along, across]))
-    assert (group.first.mass, slip) == ("full", pytest.approx((0.04**2 + 0.009**2) ** 0.5))
-    assert both_directions(groups_of(along)) == []

@@ -12,7 +12,7 @@ from fem.seismic.motion_files import write_at2, write_csv
 from fem.site.motions import ground_motions
 from fem.site.request import load_site
 from fem.site.run import run_site
-from fem.site.runs import NOT_COMPUTED, RunCases, key_of
+from fem.site.runs import NOT_COMPUTED, cases_of, key_of
 from fem.site.stages import SCANNED, Stages
 from fem.study.runner import run_chunk
 
@@ -113,16 +113,15 @@ def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(com
     spared = [line for line in (folder / "out" / "runs.csv").read_text().splitlines() if NOT_COMPUTED in line]
     assert spared and result.result.still == sum(line.startswith("set,") for line in spared)
     request = load_site(folder / "site.toml")
-    made = RunCases.of(request, folder / "out")
+    made = cases_of(request, folder / "out")
     cases = lambda key: made(key).with_values({"output.stop_when_still": False})  # noqa: E731 - to the end
     stages = Stages.of(request, folder / "out")
     keys = [key for factor in SCANNED for key in stages.scanned(factor)]
-    near = max((key for key in keys if stages.screening.at_rest(key)), key=stages.screening.used)
+    near = max((key for key in keys if stages.at_rest(key)), key=stages.used)
     (row,) = run_chunk(cases, [near])
-    assert (
-        row["outcome"] == "rest" and row["rotation_ratio"] < 1e-4 and row["max_slip_m"] < 1e-5
-    )  # of a base that keeps its place, as far as its springs creep
-    beyond = min((key for key in keys if stages.screening.used(key) > 1.3), key=stages.screening.used)
+    # of a base that keeps its place, as far as its springs creep
+    assert row["outcome"] == "rest" and row["rotation_ratio"] < 1e-4 and row["max_slip_m"] < 1e-5
+    beyond = min((key for key in keys if stages.used(key) > 1.3), key=stages.used)
     (row,) = run_chunk(cases, [beyond])
     assert row["rotation_ratio"] > 1e-4 or row["max_slip_m"] > 1e-6
 
@@ -130,7 +129,7 @@ def test_runs_below_uplift_and_slip_are_not_computed_and_rest_where_they_are(com
 def test_what_the_rule_decides_by_is_computed_as_a_single_run_and_what_is_counted_more_coarsely(computed):
     result, folder = computed
     request = load_site(folder / "site.toml")
-    made = RunCases.of(request, folder / "out")
+    made = cases_of(request, folder / "out")
     tolerances = {run.stage: made(key_of(run)).solver.energy_tolerance for run in result.runs}
     assert tolerances.keys() >= {"set", "repeated", "scan", "refined", "further"}
     usual = request.container.solver.energy_tolerance
@@ -146,7 +145,7 @@ def test_on_a_floor_that_gives_way_every_run_is_computed(tmp_path, preset, spare
     request = load_site(place)
     stages = Stages.of(request, tmp_path)
     weak = stages.scanned(0.1)
-    assert [stages.screening.at_rest(key) for key in weak] == [spared] * len(weak)
+    assert [stages.at_rest(key) for key in weak] == [spared] * len(weak)
 
 
 def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):

@@ -13,7 +13,7 @@ from fem.__main__ import main
 from fem.site.motions import ground_motions
 from fem.site.request import load_site
 from fem.site.size import size_axis
-from fem.site.size_run import verification_at
+from fem.site.size_run import stages_at
 
 SURE = SITE.replace("further = 2", "further = 72\nvertical = false")
 
@@ -87,11 +87,9 @@ def test_values_share_a_folder_of_motions_where_these_are_the_same(tmp_path, key
     (tmp_path / "hall.toml").write_text(SITE, encoding="utf-8")
     asked = load_site(tmp_path / "hall.toml")
     axis = size_axis(asked, key, low=ends[0], high=ends[1], count=2)
-    works = [verification_at(asked, axis, value, tmp_path / "made", {}) for value in axis.values]
-    assert len({work.stages.folder for work in works}) == len(list((tmp_path / "made").iterdir())) == folders
+    works = [stages_at(asked, axis, value, tmp_path / "made", {}) for value in axis.values]
+    assert len({work.folder for work in works}) == len(list((tmp_path / "made").iterdir())) == folders
     for work in works:
-        key = work.stages.of_set()[0]
-        assert (work.stages.folder / "motions" / f"{key.stem}_h.csv").is_file()
-        np.testing.assert_array_equal(
-            work.stages.screening.motions[key.stem].horizontal, work.stages.ground[0].horizontal
-        )
+        key = work.of_set()[0]
+        assert (work.folder / "motions" / f"{key.stem}_h.csv").is_file()
+        np.testing.assert_array_equal(work.motions[key.stem].horizontal, work.ground[0].horizontal)

@@ -31,7 +31,7 @@ slip_m = {limit}
 def slid(folder, *, limit=0.2, motions="", building="", container=""):
     """What stages find, and the motions of the floors."""
     stages = stages_of(folder, limit=limit, motions=motions, building=building, container=container)
-    return stages.beside().two_directions, stages.floors
+    return stages.beside()["two_directions"], stages.floors
 
 
 def stages_of(folder, *, limit=0.2, motions="", building="", container=""):
@@ -71,10 +71,10 @@ def test_further_motions_have_a_second_component_and_their_own_slips(tmp_path):
     with runner_of(jobs=1) as runner:
         stages._make(runner, keys)
     stages.rows.runs.update({key: replace(run, **vars(key)) for key in keys})
-    slips = stages.beside().slips_of_further
+    slips = stages.beside()["slips_of_further"]
     first = keys[0]
     pair = first.mu_static, first.mu_kinetic
-    motions = [stages.screening.motions[stem] for stem in sorted({key.stem for key in keys})]
+    motions = [stages.motions[stem] for stem in sorted({key.stem for key in keys})]
     assert slips == {
         (number, None, *pair): largest_slip(motion, pair) for number, motion in enumerate(motions, start=1)
     }
@@ -97,7 +97,7 @@ def answer_beside(stages):
     """The answer where all runs of the set stand, and nothing else is asked for."""
     run = replace(RUN, mass="full", rotation_ratio=0.0, max_slip_m=0.0, outcome="rest")
     runs = {key: replace(run, **vars(key)) for key in stages.of_set()}
-    return answer_of(stages.request, example()[0].set, runs, stages.beside())
+    return answer_of(stages.request, example()[0].set, runs, **stages.beside())
 
 
 @pytest.mark.parametrize(

@@ -113,11 +113,7 @@ def test_each_replicate_is_stratified_and_no_two_are_the_same(sampling):
         ({"distribution": "uniform", "from": 1, "to": 3}, 2.0, (1.0, 3.0)),
         ({"distribution": "log-uniform", "from": 0.5, "to": 2}, 1.0, (0.5, 2.0)),
         ({"distribution": "normal", "mean": 1.0, "deviation": 0.1, "cut": 2}, 1.0, (0.8, 1.2)),
-        (
-            {"distribution": "lognormal", "median": 2.0, "deviation": 0.5},
-            2.0,
-            (2 * np.exp(-1.5), 2 * np.exp(1.5)),
-        ),
+        ({"distribution": "lognormal", "median": 1, "deviation": 0.5}, 1.0, (np.exp(-1.5), np.exp(1.5))),
     ],
 )
 def test_distributions_have_their_middles_and_ends(given, middle, ends):

@@ -10,9 +10,10 @@ import pytest
 from fem.__main__ import main
 from fem.case.case import load_case
 from fem.case.validation import CaseError
+from fem.html.units import typeset
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
-from fem.study.hall import read_hall, run_hall, weakness
+from fem.study.hall import GRAVEST, LEAVES, read_hall, run_hall, weakness
 from fem.study.table import table_text
 
 BASE = """
@@ -91,6 +92,7 @@ def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, capsys):
             assert row[name] == getattr(alone, name), name
             if isinstance(row[name], float):
                 assert text[name] == f"{row[name]:.4g}"
+        assert row["card"].split(" | ") == [*alone.card] and text["first_line"] == alone.card[0]
     ranks = {row["name"]: row["rank"] for row in found["table"]}
     assert ranks == {"=B": 1, "A": 2, "C": 2, "D": 3, "bad": None}
     tags = {one["tag"]: one["counts"] for one in found["tags"]}
@@ -143,6 +145,37 @@ def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_fol
         ]
     ]
     assert sorted(range(6), key=lambda row: weakness(rows[row])) == [5, 4, 3, 1, 2, 0]
+
+
+FLOOR = '[floor]\npreset = "concrete C25/30"\ncorner_patch_m = [0.3, 0.5]\n[limits]\nslip_m = 0.05\n'
+OF_ALL_KINDS = """name,width_m,height_m,mass_kg,mu_static,floor.bearing_strength_Pa
+rests,2,2,9000,0.9,
+rocks,2,6,24000,0.9,
+slides,2,2,9000,0.45,
+leaves,2,2,9000,0.2,
+destroyed,2,6,24000,0.9,1.9e6
+falls,0.8,6,24000,0.9,
+"""
+
+
+def test_the_gravest_stands_first_with_the_card_of_its_run(tmp_path, base, capsys):
+    base.write_text(BASE + FLOOR)
+    command = ["batch", str(listed(tmp_path, OF_ALL_KINDS)), "--case", "base.toml", "--margins", "none", "-q"]
+    assert main([*command, "--out", "out", "--set", "motion.pulse_s=0.7"]) == 0
+    said = capsys.readouterr().out
+    table = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))["table"]
+    ranked = sorted(table, key=lambda row: row["rank"])
+    assert [row["name"] for row in ranked] == ["falls", "destroyed", "leaves", "rocks", "slides", "rests"]
+    assert [row["does"] for row in ranked] == [*GRAVEST[:2], LEAVES, *GRAVEST[4:6], GRAVEST[-1]]
+    texts = {row["name"]: row for row in rows_of(tmp_path / "out" / "hall.csv")}
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    for row in ranked:
+        alone = compute(load_case("base.toml", shlex.split(row["command"])[6::2]), band=False).verdict
+        first = alone.card[0].replace(f", {alone.invalid_reason}", "")
+        assert row["card"].split(" | ") == [first, *alone.card[1:]]
+        assert first in said and texts[row["name"]]["first_line"] == first
+        assert f"<strong>{row['name']}</strong>: {typeset(first)}" in page
+    assert "1 left its place by" in said and "more than the limit of 50.0 mm" in ranked[2]["card"]
 
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):

@@ -11,7 +11,7 @@ from fem.figures.style import svg_of
 from fem.study.answers import sweep_answer
 from fem.study.axes import Axis
 from fem.study.design import MapChoice
-from fem.study.maps import PRINTED_SHARES, SHARE_COLOURS, draw_maps, safe_boundary, sweep_map
+from fem.study.maps import SHARE_COLOURS, draw_maps, safe_boundary, sweep_map
 from fem.study.sweep_table import SweepResult, SweepTable
 
 FREQUENCY = Axis(
@@ -68,17 +68,16 @@ def words_of(axes):
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-@pytest.mark.parametrize("kind", ["outcome", "outcome_print"])
-def test_a_map_shows_how_many_copies_overturn_beside_the_outcome(kind):
+def test_a_map_shows_how_many_copies_overturn_beside_the_outcome():
     table = table_of(FREQUENCY, PEAK, copies=True)
-    figure = sweep_map(table, kind, MapChoice())
+    figure = sweep_map(table, "outcome", MapChoice())
     assert "with mu_k = mu_s/2" in figure.get_suptitle()
     share, outcome = panels_of(figure)
     assert words_of(share) == [
         *("none overturns", "up to a quarter", "up to three quarters", "more", "all overturn")
     ]
     assert {"rest", "slide", "rock", "slide-rock", "overturned"} <= set(words_of(outcome))
-    shades = [to_rgba(one) for one in (SHARE_COLOURS if kind == "outcome" else PRINTED_SHARES).values()]
+    shades = [to_rgba(one) for one in SHARE_COLOURS.values()]
     classes = [[shades.index(tuple(cell)) for cell in row] for row in colours_of(share)]
     for cell, part in enumerate(table["overturned_share"]):
         frequency, peak = divmod(cell, 4)
@@ -125,7 +124,7 @@ def test_the_paper_is_marked_on_maps_of_its_containers_alone(case):
 def test_maps_are_the_same_bytes_again(tmp_path):
     table = table_of(FREQUENCY, PEAK)
     names = draw_maps(table, tmp_path / "maps", MapChoice())
-    assert names == [f"maps/{kind}.svg" for kind in ("outcome", "outcome_print", "rotation", "slip")]
+    assert names == [f"maps/{kind}.svg" for kind in ("outcome", "rotation", "slip")]
     first = (tmp_path / names[0]).read_bytes()
     assert b"A &lt;title&gt; &amp; more" in first
     assert svg_of(sweep_map(table, "outcome", MapChoice())).encode() == first
