@@ -106,16 +106,15 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         late = history["rotation_rad"][time >= time[-1] - 1.0 / model.static.frequency_parameter]
         if late.size > 1 and np.ptp(late) < STILL * model.static.slenderness_angle:
             verdict = replace(verdict, tilt_rad=float(late[-1]))
-    place, whose = place_of(model.case, model.container.mesh.width)
-    return replace(verdict, place_m=place, place_is=whose)
+    return replace(verdict, **place_of(model.case, model.container.mesh.width))
 
 
-def place_of(case: Case, width: float) -> tuple[float, str]:
-    """The slip beyond which a container has left its place [m], and whose it is: stated, the gap beside, the width."""
+def place_of(case: Case, width: float) -> dict[str, Any]:
+    """The slip beyond which a container has left its place [m], and whose it is: stated, the gap beside, its width."""
+    place = min([*((row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0), (width, "width")])
     if case.limits is not None and case.limits.slip_m is not None:
-        return case.limits.slip_m, "limit"
-    gaps = [(row.gap_m, "gap") for row in case.neighbour if row.gap_m > 0.0]
-    return min([*gaps, (width, "width")])
+        place = case.limits.slip_m, "limit"
+    return {"place_m": place[0], "place_is": place[1]}
 
 
 def verdict_from(

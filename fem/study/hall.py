@@ -572,8 +572,8 @@ def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tup
     for first in range(0, len(items), motions):
         case = hall.make.case(items[first])
         mesh = build_container(case)
-        place, whose = place_of(case, mesh.width)
-        own = [row | {"place_m": place} for row in rows[first : first + motions]]
+        place = place_of(case, mesh.width)
+        own = [row | place for row in rows[first : first + motions]]
         worst = min(range(motions), key=lambda number: weakness(own[number]))
         item, row = items[first + worst], {name: own[worst][name] for name in (*OF_A_RUN, "place_m")}
         row["side"] = "depth" if first else "width"
@@ -581,7 +581,7 @@ def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tup
         floor = build_motions(case)
         static = static_checks_of(case, mesh, *peaks_in_run(case, *floor)).to_result()
         said = {name: row[name] for name in SCALARS if name in Verdict.__dataclass_fields__}
-        verdict = Verdict(**said, boxes=boxes_in(row), place_m=place, place_is=whose)
+        verdict = Verdict(**said, boxes=boxes_in(row), **place)
         run = RunResult(
             status=row["status"],
             static=static,

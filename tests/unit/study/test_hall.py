@@ -148,14 +148,10 @@ def test_of_what_stands_the_larger_rotation_is_weaker_and_what_does_not_rock_fol
 
 
 FLOOR = '[floor]\npreset = "concrete C25/30"\ncorner_patch_m = [0.3, 0.5]\n[limits]\nslip_m = 0.05\n'
-OF_ALL_KINDS = """name,width_m,height_m,mass_kg,mu_static,floor.bearing_strength_Pa
-rests,2,2,9000,0.9,
-rocks,2,6,24000,0.9,
-slides,2,2,9000,0.45,
-leaves,2,2,9000,0.2,
-destroyed,2,6,24000,0.9,1.9e6
-falls,0.8,6,24000,0.9,
-"""
+OF_ALL_KINDS = (
+    "name,width_m,height_m,mass_kg,mu_static,floor.bearing_strength_Pa\nrests,2,2,9000,0.9,\nrocks,2,6,24000,0.9,\n"
+    "slides,2,2,9000,0.45,\nleaves,2,2,9000,0.2,\ndestroyed,2,6,24000,0.9,1.9e6\nfalls,0.8,6,24000,0.9,\n"
+)
 
 
 def test_the_gravest_stands_first_with_the_card_of_its_run(tmp_path, base, capsys):
@@ -163,8 +159,9 @@ def test_the_gravest_stands_first_with_the_card_of_its_run(tmp_path, base, capsy
     command = ["batch", str(listed(tmp_path, OF_ALL_KINDS)), "--case", "base.toml", "--margins", "none", "-q"]
     assert main([*command, "--out", "out", "--set", "motion.pulse_s=0.7"]) == 0
     said = capsys.readouterr().out
-    table = json.loads((tmp_path / "out" / "hall.json").read_text(encoding="utf-8"))["table"]
-    ranked = sorted(table, key=lambda row: row["rank"])
+    ranked = sorted(
+        json.loads((tmp_path / "out/hall.json").read_text())["table"], key=lambda row: row["rank"]
+    )
     assert [row["name"] for row in ranked] == ["falls", "destroyed", "leaves", "rocks", "slides", "rests"]
     assert [row["does"] for row in ranked] == [*GRAVEST[:2], LEAVES, *GRAVEST[4:6], GRAVEST[-1]]
     texts = {row["name"]: row for row in rows_of(tmp_path / "out" / "hall.csv")}
