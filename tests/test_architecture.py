@@ -133,13 +133,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 3_962, 120),
-    "run": ("fem/run", 4_819, 162),
+    "run": ("fem/run", 4_818, 162),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_977, 127),
     "study": ("fem/study fem/response", 7_320, 203),
     "site": ("fem/site", 4_560, 120),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_035, 47),
-    "product": ("mesh contact fem", 54_768, 1_627),
-    "tests": ("tests", 38_605, 2_200),
+    "product": ("mesh contact fem", 54_767, 1_627),
+    "tests": ("tests", 38_602, 2_200),
 }
 
 
