@@ -139,7 +139,7 @@ BUDGET = {
     "site": ("fem/site", 4_560, 120),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_035, 47),
     "product": ("mesh contact fem", 54_767, 1_627),
-    "tests": ("tests", 38_602, 2_200),
+    "tests": ("tests", 38_690, 2_201),
 }
 
 

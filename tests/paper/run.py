@@ -7,10 +7,11 @@ program has decided, with the same libraries, is taken from there.
 import hashlib
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 from evidence.findings import attempted
 from evidence.pages import page_of
@@ -23,7 +24,8 @@ from fem.case.validation import CaseError, did_you_mean
 from fem.html.page import Signature
 from fem.results.errors import FolderError
 from fem.results.folder import REMEDY, ResultFolder, open_result_folder, program_of_results
-from fem.results.kinds import PAPER, read_result
+from fem.results.json_block import JsonBlock
+from fem.results.kinds import PAPER, read_result, typed_result
 from fem.run.expected import say_expected
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.progress import ScreenReporter
@@ -42,6 +44,73 @@ SOURCES = (
     "verification",
 )  #: folders of the tests that decide, besides the program
 Entries = dict[str, dict[str, Any]]  #: of `study.json`, by the name of the claim
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Band(JsonBlock):
+    quantity: str
+    unit: str
+    criterion: str
+    summary: str
+    low: float
+    high: float
+    members: tuple[Mapping[str, Any], ...]
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {"members": {"what": str}}
+    needed: ClassVar[frozenset[str]] = frozenset({"what"})
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Entry(JsonBlock):
+    """A claim in `study.json`; without what its check showed where it could not be computed."""
+
+    name: str
+    section: str
+    quote: str
+    tried: str
+    verdict: str
+    error: str = ""
+    reading: str = ""
+    bounds: str = ""
+    rule: str = ""
+    comparisons: tuple[Mapping[str, Any], ...] = ()
+    setups: tuple[Mapping[str, Any], ...] = ()
+    tables: tuple[Mapping[str, Any], ...] = ()
+    drawings: tuple[Mapping[str, Any], ...] = ()
+    band: _Band | None = None
+    failed_runs: int = 0
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {
+        "comparisons": {"what": str, "unit": str, "relation": Literal["=", "<=", ">="], "holds": bool},
+        "setups": {"what": str, "command": str},
+        "tables": {"caption": str, "columns": tuple[str, ...], "rows": tuple[tuple[Any, ...], ...]},
+        "drawings": {"name": str, "caption": str},
+    }
+    needed: ClassVar[frozenset[str]] = frozenset(
+        {"what", "relation", "unit", "command", "caption", "columns", "rows", "name"}
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Topic(JsonBlock):
+    title: str
+    statements: tuple[_Entry, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Document(JsonBlock):
+    """What the page reads of `study.json`."""
+
+    status: str
+    counts: dict[str, int]
+    statements: int
+    groups: tuple[_Topic, ...]
+    untried: tuple[Mapping[str, Any], ...]
+    program: str
+    versions: dict[str, str]
+    wall_s: float
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {
+        "untried": dict.fromkeys(("section", "quote", "reason"), str)
+    }
+    needed: ClassVar[frozenset[str]] = frozenset({"section", "quote", "reason"})
 
 
 def check_claims(
@@ -131,6 +200,7 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     path = folder / PAPER.mark
     document = read_result(path, PAPER)
+    typed_result(_Document, document, path)
     try:
         figures = {svg.stem: svg.read_text(encoding="utf-8") for svg in (folder / FIGURES).glob("*.svg")}
         return page_of("study", document, figures, signature or Signature())

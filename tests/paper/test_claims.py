@@ -14,7 +14,7 @@ from paper.claims import Claim, ClaimFigure, ClaimResult, Conclusion, conclude
 from paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
 from paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
 from paper.index import all_claims
-from paper.run import check_claims
+from paper.run import check_claims, paper_report
 
 from fem.__main__ import main
 from fem.case.case import load_case
@@ -177,6 +177,22 @@ def test_the_report_of_a_study_is_signed(three, tmp_path):
     page = (tmp_path / "study" / "report.html").read_text()
     assert 'value="A. &#34;Author&#34; &lt;a@b&gt;"' in page
     assert 'value="C. Checker"' in page and 'value="B"' in page
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("quote", 1, "is no text"),
+        ("verdict", None, "is missing"),
+        ("comparisons", {}, "is no list"),
+    ],
+)
+def test_a_damaged_study_is_refused_with_file_and_key(three, tmp_path, key, value, words):
+    document = check_claims(tmp_path, Experiments(), claims=three[0][:1])
+    document["groups"][0]["statements"][0][key] = value
+    (tmp_path / "study.json").write_text(json.dumps(document))
+    with pytest.raises(FolderError, match=rf"study.json: damaged, groups\[0\].statements\[0\].{key} {words}"):
+        paper_report(tmp_path)
 
 
 def test_a_second_call_checks_only_undecided_claims_and_force_checks_all(three, tmp_path):
