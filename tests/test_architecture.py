@@ -137,9 +137,9 @@ BUDGET = {
     "pages": ("fem/html fem/figures fem/render fem/report", 4_977, 127),
     "study": ("fem/study fem/response", 7_320, 203),
     "site": ("fem/site", 4_560, 120),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_035, 47),
-    "product": ("mesh contact fem", 54_767, 1_627),
-    "tests": ("tests", 38_690, 2_201),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_038, 47),
+    "product": ("mesh contact fem", 54_770, 1_627),
+    "tests": ("tests", 38_688, 2_201),
 }
 
 

@@ -75,7 +75,10 @@ def run(
     if loaded.solver.model != "rigid":
         needed = memory_of(True, 1 if alone else None)
     if short := shortage(needed):
-        raise OutputError(short)
+        if band or margin or loaded.solver.model != "rigid" or shortage(RIGID):
+            raise OutputError(short)
+        band = margin = False
+        say(f"band and margin are left out: {short}, and the same command adds them", file=sys.stderr)
     solver = importlib.import_module("fem.run.run")
     options = solver.RunOptions(check_rigid=check_rigid, band=band, margin=margin, resume=resume, force=force)
     brief = importlib.import_module("fem.run.summary").brief_summary
