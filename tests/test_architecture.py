@@ -129,17 +129,17 @@ BUDGET = {
     "runtime": ("fem/runtime", 1_080, 62),
     "records": ("fem/records", 2_645, 72),
     "case": ("fem/case", 5_437, 130),
-    "results": ("fem/results", 2_954, 96),
+    "results": ("fem/results", 2_955, 96),
     "seismic": ("fem/seismic", 2_315, 62),
     "solid": ("fem/solid", 1_873, 64),
     "model": ("fem/model", 3_962, 120),
     "run": ("fem/run", 4_818, 162),
-    "pages": ("fem/html fem/figures fem/render fem/report", 4_977, 127),
-    "study": ("fem/study fem/response", 7_320, 203),
+    "pages": ("fem/html fem/figures fem/render fem/report", 4_975, 127),
+    "study": ("fem/study fem/response", 7_333, 203),
     "site": ("fem/site", 4_560, 120),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_038, 47),
-    "product": ("mesh contact fem", 54_770, 1_627),
-    "tests": ("tests", 38_688, 2_201),
+    "product": ("mesh contact fem", 54_782, 1_627),
+    "tests": ("tests", 38_699, 2_202),
 }
 
 

@@ -109,7 +109,7 @@ def draw_heat_map(
         bar: label of the colour scale.
         columns: of panels, at most.
     """
-    shared = colours if isinstance(colours, Mapping) and colours else None
+    shared, ramp = (colours, None) if isinstance(colours, Mapping) else (None, colours)
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     height = {1: 4.6, 2: 3.4 * rows}.get(columns, 2.6 * rows)
@@ -121,7 +121,7 @@ def draw_heat_map(
         for k, (axes, panel) in enumerate(zip(subplots, panels, strict=False)):
             look = panel.look or shared
             scale = ScalarMappable(
-                cmap=ListedColormap(list(look.values())) if look else colours,  # type: ignore[arg-type]
+                cmap=ListedColormap(list(look.values())) if look else ramp,
                 norm=Normalize(-0.5, len(look) - 0.5) if look else norm,
             )
             _fill_cells(axes, scale.to_rgba(np.ma.masked_invalid(panel.values)))

@@ -41,7 +41,7 @@ from fem.study.answers import (
 from fem.study.axes import Axis, axis_label, in_words, unit_of_people
 from fem.study.driver import COMPLETED, StudyResult, read_study
 from fem.study.fragility import EnsembleResult
-from fem.study.hall import GRAVEST, HallResult
+from fem.study.hall import DOUBTFUL, FALLS, HallResult
 from fem.study.sure import CHANGES, change_columns, input_in_words
 from fem.study.sweep_table import SweepTable, open_sweep
 from fem.study.table import read_rows
@@ -61,7 +61,7 @@ PEAK = "peak_acceleration_m_s2"
 #: what is shown of a motion
 MEASURES = {PEAK: PGA, "peak_velocity_m_s": PGV, "peak_displacement_m": PGD, "significant_s": DURATION}
 MANY_RESTS = 3  #: containers at rest that are listed apart
-LOOKS = dict.fromkeys((*GRAVEST[:4], "overturned", "invalid"), "bad")
+LOOKS = dict.fromkeys((*FALLS, *DOUBTFUL, "overturned", "invalid"), "bad")
 #: names of the result of a response curve that are options of its command, but for their underscores
 OPTIONS = ("count", "starts", "settle", "observe")
 RENAMED = {"--from": "first_Hz", "--to": "last_Hz", "--hold": "held"}
@@ -380,14 +380,12 @@ def folded(ranked: Sequence[A_ROW]) -> tuple[list[A_ROW], list[A_ROW]]:
 
 
 def margin_words(row: A_ROW) -> str:
-    """A margin with its range: "1.8 (1.5 to 2.1)", "1.8 (from 1.5)" where not all overturn, "> 4"; empty without."""
-    margin, tried = row["margin"], row["margin_tried_to"]
-    if margin is None:
-        return "" if tried is None else f"> {times(tried)}"
-    low, high = ("" if row[name] is None else times(row[name]) for name in ("margin_low", "margin_high"))
-    if not low:
-        return times(margin)
-    return f"{times(margin)} ({f'{low} to {high}' if high else f'from {low}'})"
+    """The margin that governs, and that with the inputs as given: "1.01 (as given 1.45)", "> 4"; empty without."""
+    margin, tried, governs = (row.get(name) for name in ("margin", "margin_tried_to", "margin_governs"))
+    given = times(margin) if margin is not None else "" if tried is None else f"> {times(tried)}"
+    if governs is None or governs == margin:
+        return given
+    return f"{'none' if governs == 1.0 else times(governs)} (as given {given})"
 
 
 def _html(

@@ -55,10 +55,11 @@ class JsonBlock:
                 key.
         """
         _require(isinstance(block, Mapping), "is no table")
-        readers = _readers(cls)  # type: ignore[arg-type]
+        kind: Any = cls  # a dataclass, which the type checker does not know of this base
+        readers = _readers(kind)
         named = [name for name in readers if block.get(name) is not None]
         given = {name: _within(name, readers[name], block[name]) for name in named}
-        for field in fields(cls):  # type: ignore[arg-type]
+        for field in fields(kind):
             optional = field.default is not field.default_factory  # both are missing of another
             _require(optional or field.name in given, IS_MISSING, field.name)
         return cls(**given)

@@ -37,7 +37,7 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
 from fem.results.outcome import COUNTED_AS, Outcome, ending_of
 from fem.results.run_result import RunResult, Verdict
-from fem.run.card import card_of
+from fem.run.card import card_of, times
 from fem.run.card import line as line_of_card
 from fem.run.described import sides_of
 from fem.run.expected import expected_s, expected_words, say_expected
@@ -60,21 +60,16 @@ from fem.study.driver import (
     runner_of,
 )
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
-from fem.study.runner import CARD_LINES, CHECKED, Row, Runner, boxes_in, check_chunk
+from fem.study.runner import CARD, CARD_LINES, CHECKED, Row, Runner, boxes_in, check_chunk
 from fem.study.table import Columns, line_of, plain_text
 
 REFUSED = "refused"  #: status of a row that cannot be computed
 LEAVES, NONE = "leaves its place", "has no outcome"
 #: what a container may do, the gravest first, in the words of `card.txt.j2`
-GRAVEST: tuple[str, ...] = (
-    "overturns",
-    "destroys a corner",
-    NONE,
-    LEAVES,
-    "slides, rocks and stands",
-    "slides and stands",
-)
-GRAVEST += ("rocks and stands", "leaves the floor for moments and stands", "rests")
+FALLS: tuple[str, ...] = ("overturns", "destroys a corner", NONE)
+DOUBTFUL: tuple[str, ...] = ("may overturn", "may destroy a corner", LEAVES, "may leave its place")
+STANDS: tuple[str, ...] = ("slides, rocks and stands", "slides and stands", "rocks and stands")
+GRAVEST = (*FALLS, *DOUBTFUL, *STANDS, "leaves the floor for moments and stands", "rests")
 #: columns of a run, as in its log
 OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
 STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
@@ -86,8 +81,7 @@ COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int, "side": str}
 FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
 #: of a row of the list
 ROW_COLUMNS = {"row": int, "line": int, "name": str, "count": int, "tag": str, "command": str}
-#: in a word the gravest of what it does; the card of its governing run
-ROW_COLUMNS |= {"does": str, "card": str}
+ROW_COLUMNS |= CARD
 #: behind the columns of the list
 RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
 RESULT_COLUMNS["first_line"] = str
@@ -327,7 +321,7 @@ def _value(key: str, text: str) -> Any:
 
 TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
-CHECK_COLUMNS = {"container": int} | CHECKED | {"card": str}
+CHECK_COLUMNS = {"container": int} | CHECKED | CARD
 MOST_RUNS = 200_000  #: unless it is forced
 MOST_NAMED = 20  #: bad rows in a refusal
 OF_A_ROW = 3e-3  #: processor time of checking a row [s]
@@ -336,7 +330,7 @@ OF_A_ROW = 3e-3  #: processor time of checking a row [s]
 SHARE, LEAST = 0.1, 30
 Checks = Literal["weakest", "all", "none"]
 MOVED = ("rested", "moved")
-WORST_FIRST = ("overturned", "invalid", "failed", "left", *reversed(MOVED))  #: what a container counts as
+WORST_FIRST = ("overturned", "invalid", "failed", *DOUBTFUL, *reversed(MOVED))  #: what a container counts as
 ROCKS = 0.01  #: rotation ratio up to which what stands is ranked by the static rule: nothing rocks
 
 
@@ -437,14 +431,16 @@ def _ending_in(row: Row) -> str:
 
 
 def weakness(row: Row) -> tuple[float, ...]:
-    """Smaller for the worse: by what it counts as, by margin, by rotation, by the static rule, by slip.
+    """Smaller for the worse: by what it counts as, its governing margin, rotation, static rule and slip.
 
-    Of a run alone neither margin nor static rule are known. What stands, but beyond its `place_m`, has left its place.
+    Of a run alone neither margin nor static rule are known, nor what its variations do. What stands, but beyond its
+    `place_m`, has left its place.
     """
-    ending, margin = _ending_in(row), row.get("margin") or row.get("margin_tried_to")
+    ending, margin = _ending_in(row), row.get("margin_governs") or row.get("margin_tried_to")
     turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
     if ending == "stood":
-        ending = "left" if slip > row.get("place_m", math.inf) else MOVED[row["outcome"] != Outcome.REST]
+        ending = LEAVES if slip > row.get("place_m", math.inf) else MOVED[row["outcome"] != Outcome.REST]
+        ending = row["does"] if row.get("does") in DOUBTFUL else ending
     if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
     return WORST_FIRST.index(ending), margin is None, margin or 0.0, -turned, -static, -slip
@@ -554,9 +550,8 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     results.write(RUNS, runs.table())
     results.write(CHECKS, checks.table())
     for item, row in found:
-        card = row["card"]
-        row |= checks.row(item)
-        row["card"] = row.get("card") or card
+        checked = checks.row(item)
+        row |= checked | {name: checked.get(name) or row[name] for name in CARD}
         row["first_line"] = row["card"].partition(CARD_LINES)[0]
     for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
         container["rank"] = rank
@@ -628,7 +623,7 @@ def _written(
         tag = tags.setdefault(row["tag"], empty)
         tag["containers"] += row["count"]
         tag["counts"][ending] += row["count"]
-        tag["margin"] = min(filter(None, (tag["margin"], row["margin"])), default=None)
+        tag["margin"] = min(filter(None, (tag["margin"], row["margin_governs"])), default=None)
     result = replace(
         begun,
         status=FAILED if {row["status"] for _, row in found} == {FAILED} else COMPLETED,
@@ -650,5 +645,15 @@ def _written(
     left = [row for row in result.ranked if row["does"] == LEAVES]
     farthest = max(left, key=itemgetter(SLIPPED), default=None)
     slid = farthest and FIGURES[SLIPPED].unit.text(farthest[SLIPPED], figures=2)
-    answer = text_of("hall_answer.txt.j2", result=result, left=left, farthest=farthest, slid=slid)
+    tried = (row for row in result.ranked if row["margin_governs"] is not None)
+    least = min(tried, key=itemgetter("margin_governs"), default=None)
+    margin = least and times(least["margin_governs"])
+    known: dict[str, Any] = {
+        "left": left,
+        "farthest": farthest,
+        "slid": slid,
+        "least": least,
+        "margin": margin,
+    }
+    answer = text_of("hall_answer.txt.j2", result=result, **known)
     return replace(result, answer=answer)

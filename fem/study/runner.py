@@ -23,6 +23,7 @@ from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS, BoxResult
 from fem.results.run_result import Verdict
+from fem.run.card import line as line_of_card
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
 from fem.run.described import part_covered
@@ -315,17 +316,22 @@ def boxes_in(row: Mapping[str, Any]) -> tuple[BoxResult, ...] | None:
 #: none, the largest one tried
 CHECKED: Columns = {"sure": str, "decided_by": str}
 CHECKED |= dict.fromkeys(("margin", "margin_low", "margin_high", "margin_tried_to"), float)
+CHECKED["margin_governs"] = float  #: the least factor at which the container or a variation does not stand
+CARD: Columns = {
+    "does": str,
+    "card": str,
+}  #: in a word the gravest of what a container does; the card of its run
 CARD_LINES = " | "  #: between the lines of a card in one field
 
 
 def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Repeat some runs with their bands and margins: rows by `CHECKED` and cards, empty where there is no outcome.
+    """Repeat some runs with their bands and margins: rows by `CHECKED` and `CARD`, empty where there is no outcome.
 
     A run that was stopped has none.
     """
     rows = []
     for item in items:
-        row: Row = dict.fromkeys(CHECKED) | {"status": "failed", "card": None}
+        row: Row = dict.fromkeys(CHECKED | CARD) | {"status": "failed"}
         try:
             case = make(item).without_fields()
             run = compute_on(_CONTAINERS.container_of(case), case, WantedChecks())
@@ -333,10 +339,12 @@ def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[R
                 break
             verdict, margin = run.verdict, run.verdict.margin
             row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
-            row["card"] = CARD_LINES.join(verdict.card)
+            row |= {"does": line_of_card(run.typed_result, "word"), "card": CARD_LINES.join(verdict.card)}
             if margin is not None:
                 tried = margin.largest_tried if margin.factor is None else None
-                row |= zip([*CHECKED][2:], (margin.factor, margin.low, margin.high, tried), strict=True)
+                governs = margin.governing and margin.governing.factor
+                found = (margin.factor, margin.low, margin.high, tried, governs)
+                row |= zip([*CHECKED][2:], found, strict=True)
         except (ValueError, ArithmeticError, RuntimeError):  # the row of the run has the reason
             pass
         rows.append(row)

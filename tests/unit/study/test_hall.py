@@ -13,7 +13,7 @@ from fem.case.validation import CaseError
 from fem.html.units import typeset
 from fem.results.figures import SCALARS
 from fem.run.compute import compute
-from fem.study.hall import GRAVEST, LEAVES, read_hall, run_hall, weakness
+from fem.study.hall import FALLS, GRAVEST, LEAVES, STANDS, read_hall, run_hall, weakness
 from fem.study.table import table_text
 
 BASE = """
@@ -111,6 +111,17 @@ def test_the_weakest_rows_are_as_sure_and_have_the_margin_of_the_run_by_itself(t
     assert row["sure"] == alone.sure and row["decided_by"] == (" ".join(alone.decided_by) or None)
     found = alone.margin
     assert (row["margin"], row["margin_low"], row["margin_high"]) == (found.factor, found.low, found.high)
+    assert row["margin_governs"] == found.governing.factor
+
+
+def test_a_list_in_which_only_variations_overturn_says_so_first(tmp_path, base):
+    result = _hall_of(tmp_path, "name,width_m\nsafe,1.2\ntight,1.08\n", checks="all")
+    first, second = result.ranked
+    assert (first["name"], first["outcome"], first["does"]) == ("tight", "rock", "may overturn")
+    assert (
+        first["card"].startswith("May overturn") and first["margin_governs"] < 1.0 < second["margin_governs"]
+    )
+    assert "none of 2 containers overturned; 1 may overturn: variations of its inputs do" in result.answer
 
 
 def test_motions_that_destroy_a_corner_are_counted_by_themselves_and_are_worse_than_those_without_an_outcome(
@@ -163,7 +174,7 @@ def test_the_gravest_stands_first_with_the_card_of_its_run(tmp_path, base, capsy
         json.loads((tmp_path / "out/hall.json").read_text())["table"], key=lambda row: row["rank"]
     )
     assert [row["name"] for row in ranked] == ["falls", "destroyed", "leaves", "rocks", "slides", "rests"]
-    assert [row["does"] for row in ranked] == [*GRAVEST[:2], LEAVES, *GRAVEST[4:6], GRAVEST[-1]]
+    assert [row["does"] for row in ranked] == [*FALLS[:2], LEAVES, *STANDS[:2], GRAVEST[-1]]
     texts = {row["name"]: row for row in rows_of(tmp_path / "out" / "hall.csv")}
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     for row in ranked:
