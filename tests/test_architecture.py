@@ -135,10 +135,10 @@ BUDGET = {
     "model": ("fem/model", 3_962, 120),
     "run": ("fem/run", 4_818, 162),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_975, 127),
-    "study": ("fem/study fem/response", 7_333, 203),
+    "study": ("fem/study fem/response", 7_331, 203),
     "site": ("fem/site", 4_560, 120),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 2_038, 47),
-    "product": ("mesh contact fem", 54_782, 1_627),
+    "product": ("mesh contact fem", 54_780, 1_627),
     "tests": ("tests", 38_699, 2_202),
 }
 

@@ -317,10 +317,8 @@ def boxes_in(row: Mapping[str, Any]) -> tuple[BoxResult, ...] | None:
 CHECKED: Columns = {"sure": str, "decided_by": str}
 CHECKED |= dict.fromkeys(("margin", "margin_low", "margin_high", "margin_tried_to"), float)
 CHECKED["margin_governs"] = float  #: the least factor at which the container or a variation does not stand
-CARD: Columns = {
-    "does": str,
-    "card": str,
-}  #: in a word the gravest of what a container does; the card of its run
+#: in a word the gravest of what a container does; the card of its run
+CARD: Columns = {"does": str, "card": str}
 CARD_LINES = " | "  #: between the lines of a card in one field
 
 
