@@ -75,30 +75,25 @@ class ContainerGeometry:
         if not isinstance(self.section, Section):
             raise MeshError(f"container section must be a Section, got {self.section!r}")
         if self.section is Section.SHELL:
-            self._require_room_between_walls()
+            if self.wall is None:
+                raise MeshError("a shell section needs a wall thickness in m; 0.008 m is usual for steel")
+            _require_length("wall", self.wall)
+            for name in ("width", "height", "depth"):
+                if not 2.0 * self.wall < getattr(self, name):
+                    raise MeshError(
+                        f"two walls of {self.wall} m leave no room in a {name} of {getattr(self, name)} m; "
+                        "thinner walls, or section solid"
+                    )
         elif self.wall is not None:
             raise MeshError(f"a solid section has no wall, got wall {self.wall} m; use section shell")
-        if self.post is not None:
-            self._require_room_between_posts(self.post)
-
-    def _require_room_between_walls(self) -> None:
-        if self.wall is None:
-            raise MeshError("a shell section needs a wall thickness in m; 0.008 m is usual for steel")
-        _require_length("wall", self.wall)
-        for name in ("width", "height", "depth"):
-            if not 2.0 * self.wall < getattr(self, name):
-                raise MeshError(
-                    f"two walls of {self.wall} m leave no room in a {name} of {getattr(self, name)} m; "
-                    "thinner walls, or section solid"
-                )
-
-    def _require_room_between_posts(self, post: CornerPost) -> None:
+        if self.post is None:
+            return
         if self.section is not Section.SHELL:
             raise MeshError("a solid section has no posts; use section shell")
         for name in ("width", "depth"):
-            if not 2.0 * post.width < getattr(self, name):
+            if not 2.0 * self.post.width < getattr(self, name):
                 raise MeshError(
-                    f"two posts of {post.width} m leave no room in a {name} of {getattr(self, name)} m"
+                    f"two posts of {self.post.width} m leave no room in a {name} of {getattr(self, name)} m"
                 )
 
     def chords(self, left: FloatArray, right: FloatArray, *, inside: float = 0.0) -> FloatArray:

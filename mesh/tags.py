@@ -9,7 +9,7 @@ then be in exactly one region.
 
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,38 +42,30 @@ class CellTags:
 
 
 def cell_regions(tags: CellTags, allowed: tuple[Region, ...]) -> IntArray:
-    """Region (m,) of every cell.
+    """Region (m,) of every cell, one of those `allowed` in this section of container.
 
-    Args:
-        tags: names and fields of the file.
-        allowed: regions of this section of container.
-
-    Raises:
-        MeshError: no tag with the name of a region; a region that the section does not have; cells in no or several
-            regions. The message lists the tags found.
+    A MeshError lists the tags found: none with the name of a region; a region that the section does not have; cells in
+    no or several regions.
     """
     tagged: dict[str, BoolArray] = {}
-    for source in (_from_sets, _from_physical_groups, _from_region_field, _from_flags, _from_joined_field):
-        groups = {name: cells for name, cells in source(tags).items() if cells.any()}
+    known = _join([region.name.lower() for region in allowed])
+    for found in _groupings(tags):
+        groups = {name: cells for name, cells in found.items() if cells.any()}
         tagged = {**groups, **tagged}
         if any(name in REGION_NAMES for name in groups):
-            return _one_region_each(groups, tags.count, allowed)
-    known = _join([region.name.lower() for region in allowed])
-    raise MeshError(
-        f"no cell is tagged with a region ({known}); found {_listing(tagged, tags)}: name the groups of cells "
-        "(Gmsh physical surfaces, element sets) after the regions"
-    )
-
-
-def _one_region_each(groups: dict[str, BoolArray], count: int, allowed: tuple[Region, ...]) -> IntArray:
-    region = np.full(count, -1, dtype=np.int64)
-    owners = np.zeros(count, dtype=np.int64)
+            break
+    else:
+        raise MeshError(
+            f"no cell is tagged with a region ({known}); found {_listing(tagged, tags)}: name the groups of cells "
+            "(Gmsh physical surfaces, element sets) after the regions"
+        )
+    region = np.full(tags.count, -1, dtype=np.int64)
+    owners = np.zeros(tags.count, dtype=np.int64)
     for name, cells in groups.items():
         if name in REGION_NAMES:
             region[cells] = REGION_NAMES[name]
             owners[cells] += 1
     listing = _listing(groups, None)
-    known = _join([each.name.lower() for each in allowed])
     foreign = [Region(value).name.lower() for value in np.unique(region[region >= 0]) if value not in allowed]
     if foreign:
         raise MeshError(
@@ -85,51 +77,44 @@ def _one_region_each(groups: dict[str, BoolArray], count: int, allowed: tuple[Re
             f"{int(np.argmax(owners > 1))}; found {listing}: each cell belongs to one of {known}"
         )
     if owners.min() == 0:
+        unknown = {name: difflib.get_close_matches(name.lower(), REGION_NAMES, n=1) for name in groups}
+        meant = (
+            f"; did you mean {near[0]} by {name}?"
+            for name, near in unknown.items()
+            if near and name not in REGION_NAMES
+        )
         raise MeshError(
             f"{int(np.sum(owners == 0))} cells are in no region, the first is cell {int(np.argmin(owners))}; "
-            f"found {listing}: each cell belongs to one of {known}{_suggestion(groups)}"
+            f"found {listing}: each cell belongs to one of {known}{next(meant, '')}"
         )
     return region
 
 
-def _from_sets(tags: CellTags) -> dict[str, BoolArray]:
-    return dict(tags.sets)
-
-
-def _from_physical_groups(tags: CellTags) -> dict[str, BoolArray]:
-    numbers = tags.data.get("gmsh:physical")
-    if numbers is None:
-        return {}
-    return {
-        tags.physical_names.get(int(number), f"physical group {number} without a name"): numbers == number
-        for number in np.unique(numbers[np.isfinite(numbers)])
-    }
-
-
-def _from_region_field(tags: CellTags) -> dict[str, BoolArray]:
-    codes = tags.data.get("region")
-    if codes is None:
-        return {}
-    names = {int(region): name for name, region in REGION_NAMES.items()}
-    return {names.get(code, f"region {code}"): codes == code for code in np.unique(codes[np.isfinite(codes)])}
-
-
-def _from_flags(tags: CellTags) -> dict[str, BoolArray]:
+def _groupings(tags: CellTags) -> Iterator[Mapping[str, BoolArray]]:
+    """Groups of cells by name, in each of the ways in which files name them; one way is asked after the other."""
+    yield tags.sets
+    numbers, codes = tags.data.get("gmsh:physical"), tags.data.get("region")
+    if numbers is not None:
+        yield {
+            tags.physical_names.get(int(number), f"physical group {number} without a name"): numbers == number
+            for number in np.unique(numbers[np.isfinite(numbers)])
+        }
+    if codes is not None:
+        names = {int(region): name for name, region in REGION_NAMES.items()}
+        finite = np.unique(codes[np.isfinite(codes)])
+        yield {names.get(code, f"region {code}"): codes == code for code in finite}
     flags = {name: tags.data[name] for name in REGION_NAMES if name in tags.data}
     for name, values in flags.items():
         if not np.isin(values, (0, 1)).all():
             raise MeshError(
                 f"cell field {name} must be 0 or 1 in every cell, got {np.unique(values)[:5].tolist()}"
             )
-    return {name: values == 1 for name, values in flags.items()}
-
-
-def _from_joined_field(tags: CellTags) -> dict[str, BoolArray]:
+    yield {name: values == 1 for name, values in flags.items()}
     for key, values in tags.data.items():
-        names = re.split(r"[-_#+/]", key)
-        if len(names) > 1 and any(name in REGION_NAMES for name in names):
-            return {name: values == number for number, name in enumerate(names)}
-    return {}
+        parts = re.split(r"[-_#+/]", key)
+        if len(parts) > 1 and any(name in REGION_NAMES for name in parts):
+            yield {name: values == number for number, name in enumerate(parts)}
+            return
 
 
 def _listing(groups: Mapping[str, BoolArray], tags: CellTags | None) -> str:
@@ -137,14 +122,6 @@ def _listing(groups: Mapping[str, BoolArray], tags: CellTags | None) -> str:
     if tags is not None:
         listed += [f"field {name}" for name in tags.data if name not in ("gmsh:geometrical", "gmsh:physical")]
     return _join(listed) if listed else "no tags at all"
-
-
-def _suggestion(groups: Mapping[str, BoolArray]) -> str:
-    for name in groups:
-        near = difflib.get_close_matches(name.lower(), REGION_NAMES, n=1)
-        if name not in REGION_NAMES and near:
-            return f"; did you mean {near[0]} by {name}?"
-    return ""
 
 
 def _join(names: list[str]) -> str:

@@ -24,8 +24,7 @@ from fem.solid.sides import nodes_at
 from mesh.container import ContainerMesh
 from mesh.errors import MeshError
 from mesh.region import Region
-from mesh.row import mesh_of_row
-from mesh.stack import box_mesh
+from mesh.stack import box_mesh, mesh_of_row
 
 ROUNDED = 9  #: decimals of the numbers by which boxes are equal
 

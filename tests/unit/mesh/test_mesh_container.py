@@ -7,12 +7,11 @@ import pytest
 
 from mesh.cells import areas_and_centroids, quadrature, signed_areas
 from mesh.container import ContainerMesh, build_container_mesh
-from mesh.elevation import Elevation
+from mesh.elevation import Elevation, scaled_jacobian
+from mesh.files import require_tiling
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
-from mesh.quality import scaled_jacobian
 from mesh.region import Region
-from mesh.tiling import require_tiling
 
 STACK = ContainerGeometry(width=1.1, height=1.0, depth=1.2, boxes=4, wall=0.008)
 BLOCK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, boxes=4, section=Section.SOLID)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from mesh.container import column_segments, foot_line
 from mesh.errors import MeshError
 from mesh.geometry import ContainerGeometry, Section
-from mesh.grid import column_segments, foot_line
 
 SHELL = {"width": 1.1, "height": 1.0, "depth": 1.1, "wall": 0.008}
 

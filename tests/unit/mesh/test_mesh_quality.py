@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mesh.elevation import corner_angles, require_quality, scaled_jacobian
 from mesh.errors import MeshQualityError
-from mesh.quality import corner_angles, require_quality, scaled_jacobian
 
 QUAD = np.array([[0, 1, 2, 3]])
 
