@@ -13,20 +13,10 @@ from itertools import islice
 
 import numpy as np
 
-from fem.records.header import (
-    NUMBER,
-    measured,
-    require_count,
-    require_interval,
-    require_length,
-    require_peak,
-    whole_number,
-)
 from fem.records.record import SAME_TIME, Component, Direction, Record
-from fem.records.source import BLOCK, LARGEST_NUMBER, MotionText, as_numbers, read_rows
+from fem.records.source import BLOCK, LARGEST_NUMBER, NUMBER, MotionText, as_numbers, require_interval
 from fem.records.table import fields_in, stated_separator
-from fem.records.units import RATES, TIMES, UNITS, settled_unit, unit_spelled, units_in_words
-from fem.records.words import BRACKETS, Name, named
+from fem.records.units import BRACKETS, RATES, TIMES, UNITS, Name, named, unit_spelled, units_in_words
 from fem.runtime.arrays import FloatArray
 
 NAME = "columns"
@@ -40,10 +30,8 @@ DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(\s+[-+]?\d+,\d+)+\s*", re.ASCII)
 BRACKETED = re.compile(r"[\[(]([^\])]{0,40})[\])]")
 LABELLED = re.compile(r"[^\[\](),;]{1,60}[\[(][^\])]{0,40}[\])]")
 MOST_WORDS = 6  #: of the name of a column
-DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
-    1: (None,),
-    2: ("horizontal", "vertical"),
-}  #: without names
+#: by the number of columns without names
+DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {1: (None,), 2: ("horizontal", "vertical")}
 #: what a header states of the samples: "NPTS = 1000", "dt: 0.01 s", "Sampling rate 100 Hz", "PGA (cm/s2) = 58"
 FACT = re.compile(
     r"\b(?:(?P<count>npts|n(?:o|um|umber)?\.? of (?:points|samples|data|values))"
@@ -66,6 +54,18 @@ class _Header:
     facts: dict[str, tuple[float, int]] = field(default_factory=dict)  #: in SI units, and their lines
     peak: tuple[str, str | None, int] | None = None  #: number, unit, line
 
+    @property
+    def timeless(self) -> bool:
+        """Whether the first column is a component, too."""
+        first, *others = self.names
+        if not others:
+            return True
+        if first.is_time or first.other or first.word == "x":
+            return False
+        if first.word == "s":  # seconds, or south
+            return all(name.direction for name in others)
+        return bool(first.direction or first.quantity) or self.units[0] in UNITS
+
 
 def read_columns(source: MotionText, *, unit: str | None, sample_interval: float | None) -> Record:
     """Read a file of one to four columns; a RecordError gives the line that does not fit."""
@@ -76,26 +76,35 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
     separator, decimal_comma = _separators(line, source.line(1))
     count = len(fields_in(line.partition("#")[0], separator))
     header = _header(source, top, count, separator)
-    timeless = count == 1 or _is_timeless(header)
-    _require_motion(source, header, timeless)
-    directed = all(name.direction for name in header.names[not timeless :])
+    _require_motion(source, header)
+    directed = all(name.direction for name in header.names[not header.timeless :])
     if count > MOST_COLUMNS or (count == MOST_COLUMNS and not directed):
         raise source.refused(
             f"{count} columns; a motion has one (with sample_interval_s), two (time, value) or three (time, "
             "horizontal, vertical), or a time and three components that name their directions, such as NS, EW, UD",
             first,
         )
-    step = _interval(source, header, sample_interval, timeless, separator)
+    step = _interval(source, header, sample_interval, separator)
     table = _table(source, first, count, separator, decimal_comma)
     _require_begin(source, top, table, separator, step)
     if step is None:
         times = table[:, 0] * TIMES[header.units[0] or "s"]
-        _require_increasing(source, times, first)
+        if (back := np.flatnonzero(np.diff(times) <= 0.0)).size:
+            row = int(back[0])
+            how = (
+                "occurs twice" if times[row] == times[row + 1] else "is earlier than that of the line before"
+            )
+            number, _ = next(islice(_contents(source.lines[first - 1 :], first), row + 1, None))
+            raise source.refused(
+                f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and "
+                "no time, name the columns, such as NS, EW, UD, and give sample_interval_s",
+                number,
+            )
         if len(times) > 1:
             require_interval(float(np.median(np.diff(times))), "the samples have")
     else:
         times = np.arange(len(table), dtype=np.float64) * step
-    components = _components(source, table, header, times, unit, timeless)
+    components = _components(source, table, header, times, unit)
     _require_facts(source, header, components)
     return Record(components=components)
 
@@ -168,7 +177,7 @@ def _table(
     for start in range(first, len(source.lines) + 1, BLOCK):
         lines = source.lines[start - 1 : start - 1 + BLOCK]
         table = _plain_table(lines, separator, decimal_comma, count)
-        blocks.append(read_rows(source, rows(lines, start)) if table is None else table)
+        blocks.append(source.read_rows(rows(lines, start)) if table is None else table)
     return np.concatenate(blocks, axis=None).reshape(-1, count)
 
 
@@ -192,7 +201,20 @@ def _header(source: MotionText, top: list[tuple[int, str]], count: int, separato
     header = _Header([Name()] * count, [None] * count)
     for number, text in ((number, line.rstrip("#")) for number, line in top):
         for fact in FACT.finditer(text):
-            _note(source, header, fact, number)
+            value = fact["value"]
+            if fact["peak"]:
+                peak = re.match(NUMBER, value)
+                unit = unit_spelled(fact["unit"] or value[peak.end() if peak else 0 :])
+                header.peak = (peak[0] if peak else "", unit, number)
+            elif fact["count"]:
+                header.facts["count"] = source.whole_number(value, "number of samples", number), number
+            elif fact["rate"]:
+                rate = source.measured(value, "sampling rate", number, units=RATES)
+                header.facts["step"] = 1.0 / rate, number
+            elif fact["step"]:
+                header.facts["step"] = source.measured(value, "interval of the samples", number), number
+            else:
+                header.facts["length"] = source.measured(value, "duration", number), number
         said = FACT.sub(" ", text)
         labels = _labels(said, count, separator) if said == text else None
         units = _units_in(said, count, separator) if labels is None else [_unit_of(label) for label in labels]
@@ -208,23 +230,6 @@ def _header(source: MotionText, top: list[tuple[int, str]], count: int, separato
                 raise source.refused(f"the header gives two units for column {column + 1}", number)
             header.units[column] = unit or header.units[column]
     return header
-
-
-def _note(source: MotionText, header: _Header, fact: re.Match[str], line: int) -> None:
-    """Note what a line states of the samples."""
-    text = fact["value"]
-    if fact["peak"]:
-        number = re.match(NUMBER, text)
-        unit = unit_spelled(fact["unit"] or text[number.end() if number else 0 :])
-        header.peak = (number[0] if number else "", unit, line)
-    elif fact["count"]:
-        header.facts["count"] = whole_number(source, text, "number of samples", line), line
-    elif fact["rate"]:
-        header.facts["step"] = 1.0 / measured(source, text, "sampling rate", line, units=RATES), line
-    elif fact["step"]:
-        header.facts["step"] = measured(source, text, "interval of the samples", line), line
-    else:
-        header.facts["length"] = measured(source, text, "duration", line), line
 
 
 def _labels(text: str, count: int, separator: str | None) -> list[str] | None:
@@ -276,20 +281,10 @@ def _unit_of(label: str) -> str | None:
     return next((unit for unit in spelled if unit in UNITS or unit in TIMES or (unit and "/" in unit)), None)
 
 
-def _is_timeless(header: _Header) -> bool:
-    """Whether the first column is a component, too."""
-    first, others = header.names[0], header.names[1:]
-    if first.is_time or first.other or first.word == "x":
-        return False
-    if first.word == "s":  # seconds, or south
-        return all(name.direction for name in others)
-    return bool(first.direction or first.quantity) or header.units[0] in UNITS
-
-
-def _require_motion(source: MotionText, header: _Header, timeless: bool) -> None:
+def _require_motion(source: MotionText, header: _Header) -> None:
     """Refuse columns that are neither times nor motions, by their names and units."""
     ordinal = ("first", "second", "third", "fourth")
-    spectral = any(name.other == "a spectrum" for name in header.names)
+    spectral, timeless = any(name.other == "a spectrum" for name in header.names), header.timeless
     for column, name in enumerate(header.names):
         period = spectral and name.word == "t"
         what = (
@@ -311,17 +306,17 @@ def _require_motion(source: MotionText, header: _Header, timeless: bool) -> None
 
 
 def _interval(
-    source: MotionText, header: _Header, given: float | None, timeless: bool, separator: str | None
+    source: MotionText, header: _Header, given: float | None, separator: str | None
 ) -> float | None:
     """The interval of samples without times, as the file states it or it is given [s]; None with times."""
     count = len(header.names)
-    if not timeless and given is not None:
+    if not header.timeless:
+        if given is None:
+            return None
         raise source.refused(
             f"sample_interval_s is for a file of one column, and {count} were found"
             + ("; write decimals with a point" if separator == "," else "")
         )
-    if not timeless:
-        return None
     stated, _ = header.facts.get("step", (given, 0))
     if stated is None:
         columns = "one column" if count == 1 else f"{count} columns that are named as components, all"
@@ -356,29 +351,11 @@ def _require_begin(
         )
 
 
-def _require_increasing(source: MotionText, times: FloatArray, first: int) -> None:
-    back = np.flatnonzero(np.diff(times) <= 0.0)
-    if back.size:
-        row = int(back[0])
-        how = "occurs twice" if times[row] == times[row + 1] else "is earlier than that of the line before"
-        number, _ = next(islice(_contents(source.lines[first - 1 :], first), row + 1, None))
-        raise source.refused(
-            f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and no "
-            "time, name the columns, such as NS, EW, UD, and give sample_interval_s",
-            number,
-        )
-
-
 def _components(
-    source: MotionText,
-    table: FloatArray,
-    header: _Header,
-    times: FloatArray,
-    unit: str | None,
-    timeless: bool,
+    source: MotionText, table: FloatArray, header: _Header, times: FloatArray, unit: str | None
 ) -> tuple[Component, ...]:
     """The columns that are no times, with the directions of their names, or by number where none has a name."""
-    begin = int(not timeless)
+    timeless, begin = header.timeless, int(not header.timeless)
     names = header.names[begin:]
     if header.unclear or timeless or any(name.direction for name in names):
         # beside what names no direction, "v" and "d" are velocities and displacements
@@ -393,7 +370,7 @@ def _components(
         ]
     components = []
     for column, name in enumerate(names, start=begin):
-        settled, by_file = settled_unit(header.units[column], unit, source.name)
+        settled, by_file = source.settled_unit(header.units[column], unit)
         if name.quantity not in (None, UNITS[settled].quantity):
             raise source.refused(
                 f"the header names column {column + 1} {name.word}, and {settled!r} measures {UNITS[settled].quantity}",
@@ -419,18 +396,18 @@ def _require_facts(source: MotionText, header: _Header, components: Sequence[Com
     """Refuse samples that are not what the header says of them."""
     facts, first = header.facts, components[0]
     if "count" in facts:
-        require_count(source, first.times.size, int(facts["count"][0]), facts["count"][1])
+        source.require_count(first.times.size, int(facts["count"][0]), facts["count"][1])
     if "step" in facts and abs(facts["step"][0] - first.step) > 0.01 * first.step:
         raise source.refused(
             f"the header states an interval of {facts['step'][0]:g} s, and the samples are {first.step:g} s apart",
             facts["step"][1],
         )
     if "length" in facts:
-        require_length(source, facts["length"][0], first.times.size, first.step, facts["length"][1])
+        source.require_length(facts["length"][0], first.times.size, first.step, facts["length"][1])
     if header.peak:
         number, unit, line = header.peak
         factor = UNITS[unit].factor if unit in UNITS else abs(first.factor)
-        require_peak(source, [component.values / factor for component in components], number, line)
+        source.require_peak([component.values / factor for component in components], number, line)
 
 
 def given_record(times: FloatArray, accelerations: Mapping[Direction, FloatArray]) -> Record:

@@ -7,15 +7,11 @@ Motion Data Format (2001), tables 1 to 8.
 
 import re
 
-from fem.records.fixed_width import fortran_format, read_block
-from fem.records.header import regular_component, require_length, whole_number
 from fem.records.record import Component, Direction, Record
-from fem.records.source import MotionText
-from fem.records.units import UNITS, settled_unit, unit_spelled
-from fem.records.words import direction_of, stream_direction
+from fem.records.source import Format, MotionText, fortran_format, regular_component
+from fem.records.units import UNITS, direction_of, stream_direction, unit_spelled
 from fem.runtime.arrays import FloatArray
 
-NAME = "COSMOS"
 TITLE = re.compile(r"\(format v\s*[\d.]+\s+with\s+(\d+)\s+text lines\)", re.IGNORECASE | re.ASCII)
 BLOCK = re.compile(r"\s*(\d+)\s+(.*)", re.ASCII)
 CHANNEL = re.compile(r"Chan\s+(\d+):\s*(\S+(?: \S+)*)", re.IGNORECASE | re.ASCII)
@@ -38,13 +34,7 @@ STREAM = re.compile(r"(?:<SCNL>|RcrdId:)\s*\S*?\.([A-Z][NLGH][A-Z0-9])\b")  #: s
 UNIT, AZIMUTH = 2, 53
 
 
-def recognises(source: MotionText) -> bool:
-    """Whether the first line names the format and its lines of text."""
-    return TITLE.search(source.line(1)) is not None
-
-
-def read(source: MotionText, unit: str | None) -> Record:
-    """Read all channels; a RecordError gives the line that does not fit."""
+def _read(source: MotionText, unit: str | None) -> Record:
     components, line = [], 1
     while line <= len(source.lines):
         component, line = _channel(source, line, unit)
@@ -73,12 +63,16 @@ def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component
     layout = fortran_format(source.line(line))
     if opening is None or layout is None:
         raise source.refused("the number of the values and their format are needed here", line)
-    count = whole_number(source, opening[1], "number of samples", line)
+    count = source.whole_number(opening[1], "number of samples", line)
     stated = _unit(source, whole, opening[2], line)
-    settled = settled_unit(stated, unit, source.name)
-    step = _interval(source, real, count, line)
+    settled = source.settled_unit(stated, unit)
+    step = 1e-3 * float(real[INTERVAL])
+    if not step > 0.0:
+        raise source.refused("the header gives no interval of the samples (real 62)", line)
+    if float(real[LENGTH]) != UNKNOWN:
+        source.require_length(float(real[LENGTH]), count, step, line)
     stream = next((m[1] for m in map(STREAM.search, source.lines[first : line - 1]) if m), "")
-    readings, line = read_block(source, line + 1, count, per_line=layout[0], width=layout[1])
+    readings, line = source.read_block(line + 1, count, per_line=layout[0], width=layout[1])
     direction = _direction(whole, name, stream)
     return regular_component(readings, step, settled, name=name, direction=direction), line
 
@@ -88,8 +82,8 @@ def _numbers(source: MotionText, line: int, what: str) -> tuple[FloatArray, int]
     opening, layout = BLOCK.match(source.line(line)), fortran_format(source.line(line))
     if opening is None or layout is None:
         raise source.refused(f"the number of the header's {what} and their format are needed here", line)
-    count = whole_number(source, opening[1], f"number of {what}", line)
-    numbers, behind = read_block(source, line + 1, count, per_line=layout[0], width=layout[1])
+    count = source.whole_number(opening[1], f"number of {what}", line)
+    numbers, behind = source.read_block(line + 1, count, per_line=layout[0], width=layout[1])
     if count < LENGTH + 1:
         raise source.refused(f"100 {what} are needed, and {count} are given", line)
     return numbers, behind
@@ -108,17 +102,6 @@ def _unit(source: MotionText, whole: FloatArray, opening: str, line: int) -> str
     return by_code or by_name
 
 
-def _interval(source: MotionText, real: FloatArray, count: int, line: int) -> float:
-    """Interval of the samples, which must fit the length that the header gives [s]."""
-    step = 1e-3 * float(real[INTERVAL])
-    if not step > 0.0:
-        raise source.refused("the header gives no interval of the samples (real 62)", line)
-    length = float(real[LENGTH])
-    if length != UNKNOWN:
-        require_length(source, length, count, step, line)
-    return step
-
-
 def _direction(whole: FloatArray, name: str, stream: str) -> tuple[Direction | None, float]:
     """Direction by its code, else by the stream that the comments name; None where these contradict each other."""
     code, named = int(whole[AZIMUTH]), stream_direction(stream)
@@ -126,3 +109,6 @@ def _direction(whole: FloatArray, name: str, stream: str) -> tuple[Direction | N
         direction = DIRECTION_CODES.get(code, ("horizontal", 1.0))
         return direction if named in (direction[0], None) else (None, 1.0)
     return (named, 1.0) if named else direction_of(name)
+
+
+COSMOS = Format("COSMOS", lambda source: TITLE.search(source.line(1)), _read)

@@ -7,13 +7,10 @@ in cm/sec2. (8f10.6)" of volume 2, which has velocities and displacements behind
 
 import re
 
-from fem.records.fixed_width import fortran_format, read_block
-from fem.records.header import measured, regular_component, require_peak, whole_number
 from fem.records.record import Component, Quantity, Record
-from fem.records.source import MotionText
-from fem.records.units import RATES, TIMES, settled_unit, unit_in_header, unit_spelled
+from fem.records.source import Format, MotionText, fortran_format, regular_component
+from fem.records.units import RATES, TIMES, unit_spelled
 
-NAME = "CSMIP"
 TITLE = re.compile(r"\s*(un)?corrected accelerogram|\s*response and fourier", re.IGNORECASE)
 OPENING = re.compile(
     r"\s*(?P<count>\d+)\s+(?:points of (?:\S+ )*?)?(?P<quantity>accel|veloc|displ)\w*"
@@ -27,13 +24,7 @@ LAYOUTS = ((8, 10), (8, 9))  #: of volumes 2 and 1, where the line gives no form
 QUANTITIES: dict[str, Quantity] = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 
 
-def recognises(source: MotionText) -> bool:
-    """Whether the first line is a title of the format."""
-    return TITLE.match(source.line(1)) is not None
-
-
-def read(source: MotionText, unit: str | None) -> Record:
-    """Read the accelerations of all channels; a RecordError gives the line that does not fit."""
+def _read(source: MotionText, unit: str | None) -> Record:
     if "fourier" in source.line(1).lower():
         raise source.refused("spectra do not move a floor; take the file of volume 1 or 2", 1)
     components: list[Component] = []
@@ -48,16 +39,16 @@ def read(source: MotionText, unit: str | None) -> Record:
             line += 1
             continue
         first, rated, quantity = line, opening["rate"], QUANTITIES[opening["quantity"].lower()]
-        count = whole_number(source, opening["count"], "number of samples", first)
+        count = source.whole_number(opening["count"], "number of samples", first)
         units = RATES if rated else TIMES
-        stated = measured(source, opening["step"], "interval of the samples", first, units=units)
+        stated = source.measured(opening["step"], "interval of the samples", first, units=units)
         layout = fortran_format(text) or LAYOUTS[bool(rated)]
-        readings, line = read_block(source, first + 1, count, per_line=layout[0], width=layout[1])
+        readings, line = source.read_block(first + 1, count, per_line=layout[0], width=layout[1])
         if quantity == "acceleration":
-            spelled = unit_in_header(source, opening["unit"].rstrip("."), quantity)
-            settled = settled_unit(spelled, unit, source.name)
+            spelled = source.unit_in_header(opening["unit"].rstrip("."), quantity)
+            settled = source.settled_unit(spelled, unit)
             if peak is not None and unit_spelled(peak[2]) == settled[0]:
-                require_peak(source, [readings], peak[1], first)
+                source.require_peak([readings], peak[1], first)
             step = 1.0 / stated if rated else stated
             components.append(regular_component(readings, step, settled, name=name))
     if not components:
@@ -65,3 +56,6 @@ def read(source: MotionText, unit: str | None) -> Record:
     names = (line.partition("Station No.")[2] for line in source.lines[:13] if "station no." in line.lower())
     station = next(names, "").strip().partition(" ")[0]
     return Record(components=tuple(components), event=source.line(3).strip(), station=station)
+
+
+CSMIP = Format("CSMIP", lambda source: TITLE.match(source.line(1)), _read)

@@ -4,16 +4,20 @@ from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
-from fem.records import cosmos, csmip, csmnc, esm, knet, peer, smc
 from fem.records.columns import NAME as COLUMNS
 from fem.records.columns import read_columns
-from fem.records.networks import NETWORKS
+from fem.records.cosmos import COSMOS
+from fem.records.csmip import CSMIP
+from fem.records.knet import KNET
+from fem.records.networks import CSMNC, ESM, NETWORKS
+from fem.records.peer import PEER
 from fem.records.record import Record, RecordError
+from fem.records.smc import SMC
 from fem.records.source import read_source
 from fem.records.units import STATED
 
-#: formats with a header of their own, each a module with `recognises` and `read`; every other text is columns
-FORMATS = (esm, knet, smc, cosmos, csmip, csmnc, *NETWORKS, peer)
+#: formats with a header of their own; every other text is columns
+FORMATS = (ESM, KNET, SMC, COSMOS, CSMIP, CSMNC, *NETWORKS, PEER)
 
 
 def read_record(path: Path, *, unit: str | None = None, sample_interval: float | None = None) -> Record:
@@ -43,9 +47,9 @@ def _read(
             return replace(record, name=source.name, format=COLUMNS)
         if sample_interval is not None:
             raise source.refused(
-                f"sample_interval_s is for a file of one column, and this is a {reader.NAME} file"
+                f"sample_interval_s is for a file of one column, and this is a {reader.name} file"
             )
-        return replace(reader.read(source, unit), name=source.name, format=reader.NAME)
+        return replace(reader.read(source, unit), name=source.name, format=reader.name)
     except RecordError as error:
         named = str(error).startswith(source.name)
         raise error if named else RecordError(f"{source.name}: {error}") from None

@@ -10,16 +10,12 @@ from itertools import pairwise, takewhile
 
 import numpy as np
 
-from fem.records.fixed_width import read_values
-from fem.records.header import NUMBER, measured, regular_component, require_length, require_peak
 from fem.records.record import Component, Record
-from fem.records.source import MotionText, read_rows
+from fem.records.source import NUMBER, Format, MotionText, regular_component
 from fem.records.table import fields_in
-from fem.records.units import RATES, settled_unit
-from fem.records.words import direction_of
+from fem.records.units import RATES, direction_of
 from fem.runtime.arrays import FloatArray
 
-NAME = "K-NET"
 CSV, TIMES, GAL = "#K-NET CSV", ["Time", "RelativeTime(s)"], "(gal)"
 LINES, LABEL = 17, 18  #: of the header, and columns of its labels
 PER_LINE, WIDTH = 8, 9
@@ -28,29 +24,27 @@ SCALE = re.compile(rf"({NUMBER})\s*\(gal\)\s*/\s*({NUMBER})", re.IGNORECASE)
 SENSORS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
 
 
-def recognises(source: MotionText) -> bool:
-    """Whether the header has the labels of NIED."""
+def _recognises(source: MotionText) -> bool:
     ascii_labels = source.line(1).startswith("Origin Time") and source.line(6).startswith("Station Code")
     return ascii_labels or source.line(1).startswith(CSV)
 
 
-def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component of an ASCII file, all of CSV; a RecordError gives the line that does not fit."""
-    settled = settled_unit("gal", unit, source.name)
+def _read(source: MotionText, unit: str | None) -> Record:
+    settled = source.settled_unit("gal", unit)
     if source.line(1).startswith(CSV):
         return _read_csv(source, settled)
-    step = 1.0 / measured(source, _value(source, 11), "sampling frequency", 11, units=RATES)
-    duration = measured(source, _value(source, 12), "duration", 12)
+    step = 1.0 / source.measured(_value(source, 11), "sampling frequency", 11, units=RATES)
+    duration = source.measured(_value(source, 12), "duration", 12)
     scale = SCALE.fullmatch(_value(source, 14))
     if scale is None:
         raise source.refused("the header gives no scale factor in gal", 14)
-    factor = measured(source, scale[1], "scale factor", 14) / measured(source, scale[2], "scale factor", 14)
+    factor = source.measured(scale[1], "scale factor", 14) / source.measured(scale[2], "scale factor", 14)
     count = round(duration / step)
     if not 1 <= count <= 10**8:
         raise source.refused("the header gives no number of samples", 12)
-    counts = read_values(source, LINES + 1, count, per_line=PER_LINE, width=WIDTH)
+    counts = source.read_values(LINES + 1, count, per_line=PER_LINE, width=WIDTH)
     component = _component((counts - counts.mean()) * factor, step, settled, _value(source, 13))
-    require_peak(source, [component.readings], _value(source, 15), 15)
+    source.require_peak([component.readings], _value(source, 15), 15)
     return Record(components=(component,), station=_value(source, 6), date=_value(source, 1))
 
 
@@ -65,8 +59,8 @@ def _read_csv(source: MotionText, settled: tuple[str, bool]) -> Record:
             "component into a column, and give unit and sample_interval_s",
             len(header),
         )
-    step = 1.0 / measured(source, below.get("SamplingFrequency(Hz)", ""), "sampling frequency", units=RATES)
-    duration = measured(source, below.get("DurationTime(s)", ""), "duration")
+    step = 1.0 / source.measured(below.get("SamplingFrequency(Hz)", ""), "sampling frequency", units=RATES)
+    duration = source.measured(below.get("DurationTime(s)", ""), "duration")
     lines = enumerate(source.lines[len(header) :], start=len(header) + 1)
     rows = [(number, fields_in(line, ",")) for number, line in lines if line.strip()]
     for number, row in rows:
@@ -74,8 +68,8 @@ def _read_csv(source: MotionText, settled: tuple[str, bool]) -> Record:
             raise source.refused(
                 f"{len(columns)} columns are needed as in the header, found {len(row)}", number
             )
-    table = read_rows(source, ((number, row[1:]) for number, row in rows)).reshape(-1, len(sensors) + 1)
-    require_length(source, duration, len(table), step)
+    table = source.read_rows(((number, row[1:]) for number, row in rows)).reshape(-1, len(sensors) + 1)
+    source.require_length(duration, len(table), step)
     if np.abs(table[:, 0] - step * np.arange(len(table))).max() > 1.01 * step:  # printed to a few digits
         raise source.refused("its times contradict the sampling frequency of the header")
     components = [
@@ -93,3 +87,6 @@ def _component(values: FloatArray, step: float, settled: tuple[str, bool], senso
 
 def _value(source: MotionText, number: int) -> str:
     return source.line(number)[LABEL:].strip()
+
+
+KNET = Format("K-NET", _recognises, _read)

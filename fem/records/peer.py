@@ -8,14 +8,10 @@ PEER has four lines: database; event, date, station, component; "ACCELERATION TI
 import re
 from typing import NamedTuple
 
-from fem.records.fixed_width import read_values
-from fem.records.header import measured, regular_component, whole_number
 from fem.records.record import PLURALS, Quantity, Record
-from fem.records.source import MotionText
-from fem.records.units import settled_unit, unit_in_header, units_in_words
-from fem.records.words import BRACKETS
+from fem.records.source import Format, MotionText, regular_component
+from fem.records.units import BRACKETS, units_in_words
 
-NAME = "PEER"
 PER_LINE, WIDTH = 5, 15
 HEADING = 8  #: lines in which the header must end
 COUNT = re.compile(r"\bNPTS\b\s*[=:]?\s*([^\s,;=:]+)", re.IGNORECASE)
@@ -27,7 +23,7 @@ QUANTITY = re.compile(
     re.IGNORECASE,
 )
 ALONE = re.compile(r"\s*(\d{1,7})[\s,;]+([\d.]\S*(?:\s+s(?:ec\w*)?)?)\s*", re.IGNORECASE | re.ASCII)
-QUANTITIES: dict[str, Quantity] = {name: name for name in PLURALS}
+QUANTITIES: dict[str, Quantity] = {name.upper(): name for name in PLURALS}
 
 
 class _Sampling(NamedTuple):
@@ -36,7 +32,7 @@ class _Sampling(NamedTuple):
     step: str
 
 
-def recognises(source: MotionText) -> bool:
+def _recognises(source: MotionText) -> bool:
     """Whether one of the first lines gives number and interval of the samples, and not of rows of columns."""
     sampling = _sampling(source)
     if sampling is None:
@@ -46,17 +42,24 @@ def recognises(source: MotionText) -> bool:
     return not in_columns or len(rows[0].split()) == 1
 
 
-def read(source: MotionText, unit: str | None) -> Record:
-    """Read the one component; a RecordError gives the line that does not fit."""
+def _read(source: MotionText, unit: str | None) -> Record:
     last, counted, interval = _sampling(source) or _Sampling(1, "", "")
-    count = whole_number(source, counted, "number of samples", last)
-    step = measured(source, interval, "interval of the samples", last)
-    settled = settled_unit(_unit(source, last), unit, source.name)
+    count = source.whole_number(counted, "number of samples", last)
+    step = source.measured(interval, "interval of the samples", last)
+    stated = None
+    for line in source.lines[:last]:
+        if match := QUANTITY.search(line):
+            stated = source.unit_in_header(match[2], QUANTITIES[match[1].upper()])
+            break
+        if units := units_in_words(line):
+            stated = units[0]
+            break
+    settled = source.settled_unit(stated, unit)
     described = source.line(2) if last == 4 else ""
     # what follows the station is its network or number, in brackets: "090 (CDMG STATION 99999)", "E, (CWB)"
     fields = [field for part in described.split(",") if (field := BRACKETS.sub("", part).strip())]
     name = fields[-1] if len(fields) > 1 else ""
-    readings = read_values(source, last + 1, count, per_line=PER_LINE, width=WIDTH)
+    readings = source.read_values(last + 1, count, per_line=PER_LINE, width=WIDTH)
     component = regular_component(readings, step, settled, name=name)
     event, station = fields[0] if len(fields) > 1 else "", fields[-2] if len(fields) > 2 else ""
     return Record(components=(component,), event=event, station=station)
@@ -70,23 +73,13 @@ def _sampling(source: MotionText) -> _Sampling | None:
         count, step = COUNT.search(line), STEP.search(line)
         if count and step:
             return _Sampling(number, count[1], step[1])
-        if (alone := ALONE.fullmatch(line)) and _stands_over(source, number, int(alone[1])):
-            return _Sampling(number, alone[1], alone[2])
+        if alone := ALONE.fullmatch(line):
+            # as many numbers as it says follow, which are not in pairs, as the rows of a table are
+            widths = [len(row.split()) for row in source.lines[number:]]
+            follow = sum(widths) == int(alone[1]) > 1 and max(widths) != 2
+            if follow or QUANTITY.search(source.line(number - 1)):
+                return _Sampling(number, alone[1], alone[2])
     return None
 
 
-def _stands_over(source: MotionText, line: int, count: int) -> bool:
-    """Whether as many numbers as a line says follow it, which are not in pairs, as the rows of a table are."""
-    if QUANTITY.search(source.line(line - 1)):
-        return True
-    widths = [len(row.split()) for row in source.lines[line:]]
-    return sum(widths) == count > 1 and max(widths) != 2
-
-
-def _unit(source: MotionText, last: int) -> str | None:
-    for line in source.lines[:last]:
-        if match := QUANTITY.search(line):
-            return unit_in_header(source, match[2], QUANTITIES[match[1].lower()])
-        if units := units_in_words(line):
-            return units[0]
-    return None
+PEER = Format("PEER", _recognises, _read)

@@ -115,13 +115,20 @@ class Record:
         """The component of a quantity that moves the floor in a direction.
 
         Directions stated in the file decide; a component without one serves either. A channel, by number from 1 or
-        by name, is taken whatever its direction.
-
-        Raises:
-            RecordError: there is none, or more than one to choose from; the message names the channels.
+        by name, is taken whatever its direction. RecordError: there is none, or more than one to choose from.
         """
         if channel:
-            return self._by_channel(channel, quantity)
+            number, called = channel.lstrip("0"), channel.casefold()
+            by_number = [one for k, one in enumerate(self.components, start=1) if str(k) == number]
+            chosen = by_number or [one for one in self.components if one.name.casefold() == called]
+            if len(chosen) != 1:
+                raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
+            if chosen[0].quantity != quantity:
+                raise RecordError(
+                    f"{self.name}: channel {channel[:40]!r} holds {PLURALS[chosen[0].quantity]}, and "
+                    f"{PLURALS[quantity]} are needed"
+                )
+            return chosen[0]
         of_quantity = [component for component in self.components if component.quantity == quantity]
         if not of_quantity:
             held = " and ".join(sorted({PLURALS[component.quantity] for component in self.components}))
@@ -141,19 +148,6 @@ class Record:
             f"{self.name}: {problem} ({self._channels()}); choose one as {self.name}#NUMBER or {self.name}#NAME"
         )
 
-    def _by_channel(self, channel: str, quantity: Quantity) -> Component:
-        by_number = [one for k, one in enumerate(self.components, start=1) if str(k) == channel.lstrip("0")]
-        by_name = [one for one in self.components if one.name.casefold() == channel.casefold()]
-        components = by_number or by_name
-        if len(components) != 1:
-            raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
-        if components[0].quantity != quantity:
-            raise RecordError(
-                f"{self.name}: channel {channel[:40]!r} holds {PLURALS[components[0].quantity]}, and "
-                f"{PLURALS[quantity]} are needed"
-            )
-        return components[0]
-
     def _channels(self) -> str:
         return "; ".join(
             f"#{number} {component.described}" for number, component in enumerate(self.components, start=1)
@@ -163,8 +157,7 @@ class Record:
 def cut_together(components: Sequence[Component], names: Sequence[str]) -> tuple[list[Component], str]:
     """Components of one recording, cut to the samples that all have, and a note where that cuts any.
 
-    Raises:
-        RecordError: by their names: they were not sampled together, interval or times differ; with both values.
+    RecordError, with their names and both values: they were not sampled together, interval or times differ.
     """
     first = components[0]
     for other, name in zip(components[1:], names[1:], strict=True):

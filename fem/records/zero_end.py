@@ -7,7 +7,6 @@ integrated as the motion is, so that both end at zero to the rounding of these s
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,15 +17,6 @@ from fem.runtime.arrays import FloatArray
 DEGREE = 5
 
 
-class _Fit(NamedTuple):
-    """Coefficients of the polynomials as linear functions of displacements (n,), and of displacement and velocity
-    at the end over the length squared and the length."""
-
-    shapes: FloatArray  #: polynomials at the samples, (n, 6)
-    of_displacement: FloatArray  #: (6, n)
-    of_ends: FloatArray  #: (6, 2)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ZeroEnd:
     """The baselines of all motions with the same times."""
@@ -35,13 +25,15 @@ class ZeroEnd:
 
     def baseline(self, acceleration: FloatArray) -> FloatArray:
         """What to subtract from an acceleration (n,), shape (n,) [m/s2]."""
-        fit, length = self._fit, float(self.times[-1] - self.times[0])
+        (shapes, of_displacement, of_ends), length = self._fit, float(self.times[-1] - self.times[0])
         x, v, _ = sampled_motion(self.times, acceleration, "acceleration")
         ends = np.array([x[-1] / length**2, v[-1] / length])
-        return np.asarray(fit.shapes @ (fit.of_displacement @ x + fit.of_ends @ ends))
+        return np.asarray(shapes @ (of_displacement @ x + of_ends @ ends))
 
     @cached_property
-    def _fit(self) -> _Fit:
+    def _fit(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Polynomials at the samples (n, 6), and their coefficients as linear functions of displacements (6, n), and of
+        displacement and velocity at the end over the length squared and the length (6, 2)."""
         times, length = self.times, float(self.times[-1] - self.times[0])
         s = (times - 0.5 * (times[0] + times[-1])) / (0.5 * length)
         shapes = np.asarray(np.polynomial.legendre.legvander(s, DEGREE), dtype=np.float64)
@@ -53,4 +45,4 @@ class ZeroEnd:
         weights = np.sqrt(0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)))
         moved = np.array([x for x, _ in integrals]).T * weights[:, None]
         best = free @ np.linalg.pinv(moved @ free)
-        return _Fit(shapes, best * weights, meets - best @ (moved @ meets))
+        return shapes, best * weights, meets - best @ (moved @ meets)
