@@ -85,15 +85,24 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
             first,
         )
     step = _interval(source, header, sample_interval, separator)
-    table = _table(source, first, count, separator, decimal_comma)
-    _require_begin(source, top, table, separator, step)
+    table = read_table(source, first, count, separator, decimal_comma)
+    for number, text in top:  # a broken row, which would be taken for a title
+        fields = fields_in(text, separator)
+        begin = as_numbers(fields[:1]) if len(fields) == count > 1 else None
+        if begin is not None and not text.endswith("#") and begin[0] < table[0, 0]:
+            raise source.refused("not a number, or too large for one (no unit, no text)", number)
+    value, behind = float(table[0, 0]), len(table) - 1
+    if count == 1 and behind > 1 and value in (behind, behind - 1, step):
+        what = "the interval of the samples" if value == step else "the number of the values below it"
+        raise source.refused(
+            f"its first number is {what}; delete the line, or write number and interval in one line above the values"
+        )
     if step is None:
         times = table[:, 0] * TIMES[header.units[0] or "s"]
         if (back := np.flatnonzero(np.diff(times) <= 0.0)).size:
             row = int(back[0])
-            how = (
-                "occurs twice" if times[row] == times[row + 1] else "is earlier than that of the line before"
-            )
+            twice = times[row] == times[row + 1]
+            how = "occurs twice" if twice else "is earlier than that of the line before"
             number, _ = next(islice(_contents(source.lines[first - 1 :], first), row + 1, None))
             raise source.refused(
                 f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and "
@@ -107,11 +116,6 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
     components = _components(source, table, header, times, unit)
     _require_facts(source, header, components)
     return Record(components=components)
-
-
-def rows_of(source: MotionText, first: int, count: int) -> FloatArray:
-    """The numbers from a line on, between commas or blanks, shape (n, count)."""
-    return _table(source, first, count, "," if "," in source.line(first) else None, False)
 
 
 def _down_to_numbers(lines: Sequence[str]) -> Iterator[tuple[int, str]]:
@@ -157,8 +161,8 @@ def _separators(line: str, first: str) -> tuple[str | None, bool]:
     return ("," if "," in line else None), any("," in text for text in fields_in(line, ","))
 
 
-def _table(
-    source: MotionText, first: int, count: int, separator: str | None, decimal_comma: bool
+def read_table(
+    source: MotionText, first: int, count: int, separator: str | None, decimal_comma: bool = False
 ) -> FloatArray:
     """The numbers from the line `first` on, shape (n, columns)."""
 
@@ -286,11 +290,8 @@ def _require_motion(source: MotionText, header: _Header) -> None:
     ordinal = ("first", "second", "third", "fourth")
     spectral, timeless = any(name.other == "a spectrum" for name in header.names), header.timeless
     for column, name in enumerate(header.names):
-        period = spectral and name.word == "t"
-        what = (
-            "a period" if period else name.other or (name.is_time and (column > 0 or timeless) and "a time")
-        )
-        if what:
+        misplaced = name.is_time and (column > 0 or timeless) and "a time"
+        if what := "a period" if spectral and name.word == "t" else name.other or misplaced:
             word = name.word if len(name.word) > 3 else name.word.capitalize()
             raise source.refused(
                 f"its {ordinal[column]} column is {word}, {what}; a motion has times, and accelerations or "
@@ -328,27 +329,6 @@ def _interval(
         )
     require_interval(stated, "the header gives")
     return stated
-
-
-def _require_begin(
-    source: MotionText,
-    top: list[tuple[int, str]],
-    table: FloatArray,
-    separator: str | None,
-    step: float | None,
-) -> None:
-    """Refuse a broken row that would be taken for a title, and a count or interval that would be taken for a value."""
-    for number, text in top:
-        fields = fields_in(text, separator)
-        begin = as_numbers(fields[:1]) if len(fields) == table.shape[1] > 1 else None
-        if begin is not None and not text.endswith("#") and begin[0] < table[0, 0]:
-            raise source.refused("not a number, or too large for one (no unit, no text)", number)
-    value, behind = float(table[0, 0]), len(table) - 1
-    if table.shape[1] == 1 and behind > 1 and value in (behind, behind - 1, step):
-        what = "the interval of the samples" if value == step else "the number of the values below it"
-        raise source.refused(
-            f"its first number is {what}; delete the line, or write number and interval in one line above the values"
-        )
 
 
 def _components(

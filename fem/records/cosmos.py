@@ -64,8 +64,14 @@ def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component
     if opening is None or layout is None:
         raise source.refused("the number of the values and their format are needed here", line)
     count = source.whole_number(opening[1], "number of samples", line)
-    stated = _unit(source, whole, opening[2], line)
-    settled = source.settled_unit(stated, unit)
+    by_code, spelled = UNIT_CODES.get(int(whole[UNIT])), SPELLED.search(opening[2])
+    by_name = unit_spelled(spelled[1]) if spelled else None
+    if by_code in ("counts", "volts") or (spelled and spelled[1].lower().startswith("count")):
+        raise source.refused("raw counts are no motion; take the file of volume 1 or 2", line)
+    known = [UNITS.get(name) for name in (by_code, by_name) if name is not None]
+    if len(known) == 2 and known[0] != known[1]:
+        raise source.refused(f"the unit is {by_code!r} by its code and {by_name!r} by this line", line)
+    settled = source.settled_unit(by_code or by_name, unit)
     step = 1e-3 * float(real[INTERVAL])
     if not step > 0.0:
         raise source.refused("the header gives no interval of the samples (real 62)", line)
@@ -73,7 +79,7 @@ def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component
         source.require_length(float(real[LENGTH]), count, step, line)
     stream = next((m[1] for m in map(STREAM.search, source.lines[first : line - 1]) if m), "")
     readings, line = source.read_block(line + 1, count, per_line=layout[0], width=layout[1])
-    direction = _direction(whole, name, stream)
+    direction = _direction(int(whole[AZIMUTH]), name, stream)
     return regular_component(readings, step, settled, name=name, direction=direction), line
 
 
@@ -89,22 +95,9 @@ def _numbers(source: MotionText, line: int, what: str) -> tuple[FloatArray, int]
     return numbers, behind
 
 
-def _unit(source: MotionText, whole: FloatArray, opening: str, line: int) -> str | None:
-    """The unit by its code and as the line that opens the data spells it."""
-    by_code = UNIT_CODES.get(int(whole[UNIT]))
-    spelled = SPELLED.search(opening)
-    by_name = unit_spelled(spelled[1]) if spelled else None
-    if by_code in ("counts", "volts") or (spelled and spelled[1].lower().startswith("count")):
-        raise source.refused("raw counts are no motion; take the file of volume 1 or 2", line)
-    known = [UNITS.get(name) for name in (by_code, by_name) if name is not None]
-    if len(known) == 2 and known[0] != known[1]:
-        raise source.refused(f"the unit is {by_code!r} by its code and {by_name!r} by this line", line)
-    return by_code or by_name
-
-
-def _direction(whole: FloatArray, name: str, stream: str) -> tuple[Direction | None, float]:
+def _direction(code: int, name: str, stream: str) -> tuple[Direction | None, float]:
     """Direction by its code, else by the stream that the comments name; None where these contradict each other."""
-    code, named = int(whole[AZIMUTH]), stream_direction(stream)
+    named = stream_direction(stream)
     if code in DIRECTION_CODES or 0 < code <= 360:
         direction = DIRECTION_CODES.get(code, ("horizontal", 1.0))
         return direction if named in (direction[0], None) else (None, 1.0)

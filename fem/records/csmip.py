@@ -7,7 +7,7 @@ in cm/sec2. (8f10.6)" of volume 2, which has velocities and displacements behind
 
 import re
 
-from fem.records.record import Component, Quantity, Record
+from fem.records.record import Component, Record
 from fem.records.source import Format, MotionText, fortran_format, regular_component
 from fem.records.units import RATES, TIMES, unit_spelled
 
@@ -21,7 +21,6 @@ OPENING = re.compile(
 CHANNEL = re.compile(r"\bChan\s+(\d+):\s*(\S+(?: \S+)*)", re.IGNORECASE | re.ASCII)
 PEAK = re.compile(r"\bpeak\s+accel\w*\s*=\s*(\S+)\s*(\S+)", re.IGNORECASE)
 LAYOUTS = ((8, 10), (8, 9))  #: of volumes 2 and 1, where the line gives no format
-QUANTITIES: dict[str, Quantity] = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
 
 
 def _read(source: MotionText, unit: str | None) -> Record:
@@ -38,14 +37,14 @@ def _read(source: MotionText, unit: str | None) -> Record:
             peak = PEAK.search(text) or peak
             line += 1
             continue
-        first, rated, quantity = line, opening["rate"], QUANTITIES[opening["quantity"].lower()]
+        first, rated, taken = line, opening["rate"], opening["quantity"].lower() == "accel"
         count = source.whole_number(opening["count"], "number of samples", first)
         units = RATES if rated else TIMES
         stated = source.measured(opening["step"], "interval of the samples", first, units=units)
         layout = fortran_format(text) or LAYOUTS[bool(rated)]
         readings, line = source.read_block(first + 1, count, per_line=layout[0], width=layout[1])
-        if quantity == "acceleration":
-            spelled = source.unit_in_header(opening["unit"].rstrip("."), quantity)
+        if taken:
+            spelled = source.unit_in_header(opening["unit"].rstrip("."), "acceleration")
             settled = source.settled_unit(spelled, unit)
             if peak is not None and unit_spelled(peak[2]) == settled[0]:
                 source.require_peak([readings], peak[1], first)

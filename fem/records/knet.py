@@ -10,11 +10,10 @@ from itertools import pairwise, takewhile
 
 import numpy as np
 
-from fem.records.record import Component, Record
+from fem.records.record import Record
 from fem.records.source import NUMBER, Format, MotionText, regular_component
 from fem.records.table import fields_in
 from fem.records.units import RATES, direction_of
-from fem.runtime.arrays import FloatArray
 
 CSV, TIMES, GAL = "#K-NET CSV", ["Time", "RelativeTime(s)"], "(gal)"
 LINES, LABEL = 17, 18  #: of the header, and columns of its labels
@@ -33,9 +32,13 @@ def _read(source: MotionText, unit: str | None) -> Record:
     settled = source.settled_unit("gal", unit)
     if source.line(1).startswith(CSV):
         return _read_csv(source, settled)
-    step = 1.0 / source.measured(_value(source, 11), "sampling frequency", 11, units=RATES)
-    duration = source.measured(_value(source, 12), "duration", 12)
-    scale = SCALE.fullmatch(_value(source, 14))
+
+    def value(number: int) -> str:
+        return source.line(number)[LABEL:].strip()
+
+    step = 1.0 / source.measured(value(11), "sampling frequency", 11, units=RATES)
+    duration = source.measured(value(12), "duration", 12)
+    scale = SCALE.fullmatch(value(14))
     if scale is None:
         raise source.refused("the header gives no scale factor in gal", 14)
     factor = source.measured(scale[1], "scale factor", 14) / source.measured(scale[2], "scale factor", 14)
@@ -43,9 +46,11 @@ def _read(source: MotionText, unit: str | None) -> Record:
     if not 1 <= count <= 10**8:
         raise source.refused("the header gives no number of samples", 12)
     counts = source.read_values(LINES + 1, count, per_line=PER_LINE, width=WIDTH)
-    component = _component((counts - counts.mean()) * factor, step, settled, _value(source, 13))
-    source.require_peak([component.readings], _value(source, 15), 15)
-    return Record(components=(component,), station=_value(source, 6), date=_value(source, 1))
+    readings, name = (counts - counts.mean()) * factor, value(13)
+    direction = direction_of(SENSORS.get(name, name))
+    component = regular_component(readings, step, settled, name=name, direction=direction)
+    source.require_peak([component.readings], value(15), 15)
+    return Record(components=(component,), station=value(6), date=value(1))
 
 
 def _read_csv(source: MotionText, settled: tuple[str, bool]) -> Record:
@@ -73,20 +78,17 @@ def _read_csv(source: MotionText, settled: tuple[str, bool]) -> Record:
     if np.abs(table[:, 0] - step * np.arange(len(table))).max() > 1.01 * step:  # printed to a few digits
         raise source.refused("its times contradict the sampling frequency of the header")
     components = [
-        _component(column - column.mean(), step, settled, sensor)
+        regular_component(
+            column - column.mean(),
+            step,
+            settled,
+            name=sensor,
+            direction=direction_of(SENSORS.get(sensor, sensor)),
+        )
         for column, sensor in zip(table.T[1:], sensors, strict=True)
     ]
     stations = (below[label].partition(",")[0] for label in header[:-1] if label.startswith("Code,"))
     return Record(components=tuple(components), station=next(stations, ""))
-
-
-def _component(values: FloatArray, step: float, settled: tuple[str, bool], sensor: str) -> Component:
-    direction = direction_of(SENSORS.get(sensor, sensor))
-    return regular_component(values, step, settled, name=sensor, direction=direction)
-
-
-def _value(source: MotionText, number: int) -> str:
-    return source.line(number)[LABEL:].strip()
 
 
 KNET = Format("K-NET", _recognises, _read)

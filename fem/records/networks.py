@@ -14,7 +14,7 @@ import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fem.records.columns import rows_of
+from fem.records.columns import read_table
 from fem.records.record import PLURALS, Quantity, Record
 from fem.records.source import Format, MotionText, as_numbers, regular_component
 from fem.records.table import fields_in
@@ -127,18 +127,21 @@ class Network:
                 )
             return found
 
-        def fields(line: str) -> list[str]:
-            return fields_in(line, "," if "," in line else None)
+        def separator(number: int) -> str | None:
+            return "," if "," in source.line(number) else None
 
-        def starts_columns(line: str) -> bool:
-            return len(numbers := fields(line)) > 1 and as_numbers(numbers) is not None
+        def fields(number: int) -> list[str]:
+            return fields_in(source.line(number), separator(number))
 
         spelled, interval = stated(self.unit), stated(self.step)
         bracketed = re.search(r"\(([^()]*)\)", spelled.key)
         unit_text = bracketed[1] if bracketed else spelled.text
         settled = source.settled_unit(source.unit_in_header(unit_text, "acceleration"), unit)
-        first = next((k for k in range(2, HEADING) if starts_columns(source.line(k))), HEADING)
-        names = stated(self.names).parts if self.names else fields(source.line(first - 1))
+        first = next(
+            (k for k in range(2, HEADING) if len(row := fields(k)) > 1 and as_numbers(row) is not None),
+            HEADING,
+        )
+        names = stated(self.names).parts if self.names else fields(first - 1)
         rate = "rate" in interval.key or "freq" in interval.key
         steps = {
             source.measured(text, "interval of the samples", interval.line, units=RATES if rate else TIMES)
@@ -146,7 +149,7 @@ class Network:
         }
         if len(steps) != 1:
             raise source.refused("its channels have different intervals, or none", interval.line)
-        table, counts = rows_of(source, first, len(names)), stated(self.count)
+        table, counts = read_table(source, first, len(names), separator(first)), stated(self.count)
         for text in counts.parts[: len(names)]:
             count = source.whole_number(text, "number of samples", counts.line)
             source.require_count(len(table), count, counts.line)
@@ -163,11 +166,11 @@ class Network:
         return Record(components=tuple(components), station=station)
 
 
-def _names_event(source: MotionText) -> bool:
-    return source.line(1).startswith("EVENT_NAME:") and source.line(2).startswith("EVENT_ID:")
-
-
-ESM = Format("ESM ASCII", _names_event, _read_esm)
+ESM = Format(
+    "ESM ASCII",
+    lambda source: source.line(1).startswith("EVENT_NAME:") and source.line(2).startswith("EVENT_ID:"),
+    _read_esm,
+)
 CSMNC = Format(
     "CSMNC", lambda source: any(map(CSMNC_COUNT.fullmatch, source.lines[:CSMNC_LINES])), _read_csmnc
 )

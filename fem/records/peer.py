@@ -6,9 +6,8 @@ PEER has four lines: database; event, date, station, component; "ACCELERATION TI
 """
 
 import re
-from typing import NamedTuple
 
-from fem.records.record import PLURALS, Quantity, Record
+from fem.records.record import PLURALS, Record
 from fem.records.source import Format, MotionText, regular_component
 from fem.records.units import BRACKETS, units_in_words
 
@@ -23,33 +22,25 @@ QUANTITY = re.compile(
     re.IGNORECASE,
 )
 ALONE = re.compile(r"\s*(\d{1,7})[\s,;]+([\d.]\S*(?:\s+s(?:ec\w*)?)?)\s*", re.IGNORECASE | re.ASCII)
-QUANTITIES: dict[str, Quantity] = {name.upper(): name for name in PLURALS}
-
-
-class _Sampling(NamedTuple):
-    line: int
-    number: str
-    step: str
 
 
 def _recognises(source: MotionText) -> bool:
     """Whether one of the first lines gives number and interval of the samples, and not of rows of columns."""
-    sampling = _sampling(source)
-    if sampling is None:
-        return False
-    rows = [line for line in source.lines[sampling.line :] if line.strip()]
-    in_columns = sampling.number.isdigit() and len(rows) == int(sampling.number) > 1
-    return not in_columns or len(rows[0].split()) == 1
+    last, number, _ = _sampling(source)
+    rows = [line for line in source.lines[last:] if line.strip()]
+    in_columns = number.isdigit() and len(rows) == int(number) > 1
+    return last > 0 and (not in_columns or len(rows[0].split()) == 1)
 
 
 def _read(source: MotionText, unit: str | None) -> Record:
-    last, counted, interval = _sampling(source) or _Sampling(1, "", "")
+    last, counted, interval = _sampling(source)
     count = source.whole_number(counted, "number of samples", last)
     step = source.measured(interval, "interval of the samples", last)
     stated = None
     for line in source.lines[:last]:
         if match := QUANTITY.search(line):
-            stated = source.unit_in_header(match[2], QUANTITIES[match[1].upper()])
+            quantity = next(known for known in PLURALS if known == match[1].lower())
+            stated = source.unit_in_header(match[2], quantity)
             break
         if units := units_in_words(line):
             stated = units[0]
@@ -65,21 +56,21 @@ def _read(source: MotionText, unit: str | None) -> Record:
     return Record(components=(component,), event=event, station=station)
 
 
-def _sampling(source: MotionText) -> _Sampling | None:
-    """The line of number and interval of the samples, and what it gives."""
+def _sampling(source: MotionText) -> tuple[int, str, str]:
+    """The line of number and interval of the samples, and what it gives; 0 where there is none."""
     for number, line in enumerate(source.lines[:HEADING], start=1):
         if match := BEFORE.match(line):
-            return _Sampling(number, match[1], match[2])
+            return number, match[1], match[2]
         count, step = COUNT.search(line), STEP.search(line)
         if count and step:
-            return _Sampling(number, count[1], step[1])
+            return number, count[1], step[1]
         if alone := ALONE.fullmatch(line):
             # as many numbers as it says follow, which are not in pairs, as the rows of a table are
             widths = [len(row.split()) for row in source.lines[number:]]
             follow = sum(widths) == int(alone[1]) > 1 and max(widths) != 2
             if follow or QUANTITY.search(source.line(number - 1)):
-                return _Sampling(number, alone[1], alone[2])
-    return None
+                return number, alone[1], alone[2]
+    return 0, "", ""
 
 
 PEER = Format("PEER", _recognises, _read)

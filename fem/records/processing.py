@@ -5,19 +5,20 @@ First the component is trimmed, then scaled by a factor, then its baseline is re
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
 
 from contact.motion.samples import sampled_motion
 from fem.records.record import Component, RecordError
-from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 
 Baseline = Literal["none", "mean", "linear", "zero-end"]
 BASELINES: tuple[Baseline, ...] = get_args(Baseline)
 #: changes of a peak by a baseline, over the peak: what is reported (two), and what is refused
 SAID_ACCELERATION, SAID_VELOCITY, DOUBTFUL = 0.01, 0.03, 0.2
+DEGREE = 5  #: of the acceleration that `zero-end` subtracts: displacements of t^2 to t^7
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +27,7 @@ class Processing:
 
     `mean` subtracts the mean over time of the acceleration, so that the floor ends at rest; `linear` the straight line
     fitted by least squares (to the interpolated acceleration, not to the samples), so that the floor ends at rest
-    where it began: the fit makes final velocity and displacement zero. `zero-end` subtracts the polynomial of degree
-    5 whose displacement fits that of the floor best among those that end with its velocity and displacement.
+    where it began: the fit makes final velocity and displacement zero. `zero-end`: `ZeroEnd`.
     """
 
     start: float | None = None  #: of the part to take; it becomes t = 0 [s]
@@ -145,8 +145,7 @@ def stated_baseline(
 ) -> str | None:
     """What the baseline changes, in words; None where that is too little to be reported.
 
-    Raises:
-        RecordError: naming the record and the way out: it changes a peak by more than a fifth and is not allowed.
+    RecordError, with the record and the way out: it changes a peak by more than a fifth and is not allowed.
     """
     change = baseline_change(component, processing)
     if change is None or not change.is_said:
@@ -186,6 +185,42 @@ def _baseline(times: FloatArray, a: FloatArray, kind: Baseline) -> FloatArray:
     middle = (a[:-1] + a[1:]) * (s[:-1] + s[1:])
     m_1 = math.fsum(steps / 6.0 * (a[:-1] * s[:-1] + middle + a[1:] * s[1:]))
     return 0.5 * m_0 + 1.5 * m_1 * s
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ZeroEnd:
+    """Baselines that bring the floor to rest where it began, of all motions with the same times.
+
+    Subtracted is the polynomial of degree 5 whose displacement fits that of the motion best (least squares over time)
+    among those that end with its velocity and displacement. Every polynomial is interpolated linearly between samples
+    and integrated as the motion is, so that both end at zero to the rounding of these sums, whatever the interval.
+    """
+
+    times: FloatArray  #: rising, shape (n,) [s]
+
+    def baseline(self, acceleration: FloatArray) -> FloatArray:
+        """What to subtract from an acceleration (n,), shape (n,) [m/s2]."""
+        (shapes, of_displacement, of_ends), length = self._fit, float(self.times[-1] - self.times[0])
+        x, v, _ = sampled_motion(self.times, acceleration, "acceleration")
+        ends = np.array([x[-1] / length**2, v[-1] / length])
+        return np.asarray(shapes @ (of_displacement @ x + of_ends @ ends))
+
+    @cached_property
+    def _fit(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Polynomials at the samples (n, 6), and their coefficients as linear functions of displacements (6, n), and of
+        displacement and velocity at the end over the length squared and the length (6, 2)."""
+        times, length = self.times, float(self.times[-1] - self.times[0])
+        s = (times - 0.5 * (times[0] + times[-1])) / (0.5 * length)
+        shapes = np.asarray(np.polynomial.legendre.legvander(s, DEGREE), dtype=np.float64)
+        integrals = [sampled_motion(times, shape, "acceleration")[:2] for shape in shapes.T]
+        ends = np.array([[x[-1] / length**2, v[-1] / length] for x, v in integrals]).T
+        # What meets the constraints, and of all that changes nothing about them, the best fit.
+        meets, free = np.linalg.pinv(ends), np.linalg.svd(ends)[2][2:].T
+        steps = np.diff(times)
+        weights = np.sqrt(0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)))
+        moved = np.array([x for x, _ in integrals]).T * weights[:, None]
+        best = free @ np.linalg.pinv(moved @ free)
+        return shapes, best * weights, meets - best @ (moved @ meets)
 
 
 def _share(peaks: tuple[float, float]) -> float:

@@ -16,10 +16,8 @@ from numpy.typing import NDArray
 from contact.jit import compiled
 from fem.runtime.arrays import FloatArray
 
-#: samples of a period from which the peaks between samples are found within 0.05 %
-SAMPLES_PER_PERIOD = 10.0
-#: steps of the shortest period that the samples describe
-LEAST_STEPS = 2.0
+SAMPLES_PER_PERIOD = 10.0  #: from which the peaks between samples are found within 0.05 %
+LEAST_STEPS = 2.0  #: of the shortest period that the samples describe
 DAMPING_RATIO = 0.05  #: usual for spectra
 EQUAL = 1e-3  #: share of their mean within which intervals count as equal
 MOST_SAMPLES = 2_000_000  #: of a motion whose intervals differ

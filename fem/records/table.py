@@ -79,13 +79,8 @@ class UserTable:
         return [*self._lines()][1:]
 
     @property
-    def rows(self) -> list[dict[str, str]]:
-        """Their fields by column."""
-        return [{name: line.field(k) for k, name in enumerate(self.header)} for line in self.lines]
-
-    @property
     def count(self) -> int:
-        """Of these, before they are split; a line break within a field counts."""
+        """Lines below the header, before they are split; a line break within a field counts."""
         return sum(map(bool, map(str.strip, self.text.split("\n")))) - 1
 
     def require_names(self) -> None:

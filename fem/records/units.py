@@ -21,20 +21,12 @@ class Unit(NamedTuple):
 
 
 UNITS = {
-    "m/s2": Unit("acceleration", 1.0),
-    "g": Unit("acceleration", STANDARD_GRAVITY),
-    "cm/s2": Unit("acceleration", 1e-2),
-    "gal": Unit("acceleration", 1e-2),
-    "mm/s2": Unit("acceleration", 1e-3),
-    "mg": Unit("acceleration", 1e-3 * STANDARD_GRAVITY),
-    "g/10": Unit("acceleration", 0.1 * STANDARD_GRAVITY),
-    "m/s": Unit("velocity", 1.0),
-    "cm/s": Unit("velocity", 1e-2),
-    "mm/s": Unit("velocity", 1e-3),
-    "m": Unit("displacement", 1.0),
-    "cm": Unit("displacement", 1e-2),
-    "mm": Unit("displacement", 1e-3),
-}
+    "m/s2": Unit("acceleration", 1.0), "g": Unit("acceleration", STANDARD_GRAVITY), "cm/s2": Unit("acceleration", 1e-2),
+    "gal": Unit("acceleration", 1e-2), "mm/s2": Unit("acceleration", 1e-3),
+    "mg": Unit("acceleration", 1e-3 * STANDARD_GRAVITY), "g/10": Unit("acceleration", 0.1 * STANDARD_GRAVITY),
+    "m/s": Unit("velocity", 1.0), "cm/s": Unit("velocity", 1e-2), "mm/s": Unit("velocity", 1e-3),
+    "m": Unit("displacement", 1.0), "cm": Unit("displacement", 1e-2), "mm": Unit("displacement", 1e-3),
+}  # fmt: skip
 #: units that headers are known to give and that are not read
 FOREIGN = (
     "in", "ft", "in/s2", "ft/s2", "%g", "in/s", "ft/s", "counts", "volts", "v", "mv", "h", "hz", "%", "rad/s",

@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
-from fem.records.zero_end import ZeroEnd
+from fem.records.processing import ZeroEnd
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget
 from fem.seismic.ground_motion import GroundMotion

@@ -16,8 +16,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from scipy.linalg import eigh
 
+from fem.records.processing import ZeroEnd
 from fem.records.spectrum import oscillator_response
-from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 from fem.seismic.ground_motion import GroundMotion, sampled_at
 

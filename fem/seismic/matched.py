@@ -16,8 +16,8 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 
+from fem.records.processing import ZeroEnd
 from fem.records.spectrum import exact_recursion, response_spectrum
-from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, MotionTarget
 from fem.seismic.artificial import Target

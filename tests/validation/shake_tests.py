@@ -160,7 +160,8 @@ def _own(folder: Path) -> Series:
     try:
         lines = (records.decoded(read_regular(path, LARGEST_FILE)) or "").splitlines(keepends=True)
         table = UserTable(path.name, "".join(line for line in lines if not line.startswith("#")))
-        columns, rows = table.header, table.rows
+        columns = table.header
+        rows = [{name: line.field(k) for k, name in enumerate(columns)} for line in table.lines]
     except ValueError as error:
         raise ShakeTestError(f"{path}: cannot be read ({error})") from None
     specimens = tuple(name for name in columns if name.startswith("overturned"))
