@@ -17,10 +17,10 @@ from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.runtime.threads import use_one_blas_thread
-from fem.solid.assembly import FiniteElements, QuadMesh, assemble
+from fem.solid.assembly import FiniteElements, assemble
+from fem.solid.edges import nodes_at
 from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
-from fem.solid.sides import nodes_at
 from mesh.container import ContainerMesh
 from mesh.errors import MeshError
 from mesh.region import Region
@@ -174,7 +174,7 @@ def without_links(case: Case, container: Container) -> Container:
     return replace(container, nodes=container.nodes[:points], response=container.response.of_first(points))
 
 
-def _assembled(case: Case, mesh: QuadMesh) -> FiniteElements:
+def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
     box = case.container
     order = case.solver.order
     return assemble(mesh, youngs_modulus=box.youngs_modulus_Pa, poisson_ratio=box.poisson_ratio, order=order)

@@ -26,8 +26,7 @@ from fem.model.validity import require_bearing, require_stiff_contact, require_s
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import least_principal_strain
-from fem.solid.nodal_body import Body, FullBody, rotation_matrix
-from fem.solid.nodal_stack import FullStack
+from fem.solid.nodal_body import Body, FullBody, FullStack, rotation_matrix
 from fem.solid.reduction import StaticResponse
 
 #: error of a base point at which the iterations of a step stop, over the static penetration

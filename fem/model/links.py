@@ -17,7 +17,7 @@ from fem.case.tables.links import StopTable, TieTable, holder_of
 from fem.case.tables.neighbours import USUAL_DAMPING, StruckTable, top_of
 from fem.model.link_places import box_at, direction_of, overlapped, side_of
 from fem.runtime.arrays import FloatArray
-from fem.solid.sides import shapes_at
+from fem.solid.edges import shapes_at
 
 OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
 

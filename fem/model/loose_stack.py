@@ -23,8 +23,7 @@ from fem.model.container import Container
 from fem.model.links import appended, side_points
 from fem.model.support import base_points
 from fem.runtime.arrays import FloatArray
-from fem.solid.nodal_body import FullBody
-from fem.solid.nodal_stack import FullStack
+from fem.solid.nodal_body import FullBody, FullStack
 
 POINTS = 4  #: of a joint between boxes
 #: step above which the solver begins at the old positions of held points, over 1/(angular bounce frequency): in the

@@ -46,8 +46,7 @@ from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
 from fem.runtime.arrays import FloatArray
-from fem.solid.nodal_body import Body, FullBody
-from fem.solid.nodal_stack import FullStack
+from fem.solid.nodal_body import Body, FullBody, FullStack
 
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
 #: the same of the full model, whose coordinates are many

@@ -33,7 +33,7 @@ from fem.run.simulation import BEGINNING, Progress
 from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_time
 from fem.runtime.identity import program_identity
-from fem.solid.nodal_stack import FullStack
+from fem.solid.nodal_body import FullStack
 
 #: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0

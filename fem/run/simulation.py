@@ -35,8 +35,7 @@ from fem.run.verdict import audit, end_of_drive, softer_contact, verdict_from
 from fem.run.words import sentence
 from fem.runtime.progress import Reporter
 from fem.solid.elasticity import least_volume_ratio
-from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
-from fem.solid.nodal_stack import FullStack
+from fem.solid.nodal_body import FullBody, FullStack, advance_body, leave_body_alone
 
 #: length of a slice in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 1.0, 0.01

@@ -1,4 +1,4 @@
-"""Finite elements of the container: mass, stiffness and large-rotation forces, with forms in scikit-fem.
+"""Finite elements of the container: mass, stiffness and stresses under large rotations, with forms in scikit-fem.
 
 The only door to scikit-fem. Total Lagrangian, plane stress, St. Venant-Kirchhoff (`fem.solid.elasticity`);
 four-node bilinear or nine-node biquadratic quadrilaterals on straight-sided cells. 3 x 3 Gauss points, exact
@@ -6,56 +6,27 @@ for the mass of both; in bilinear parallelograms 2 x 2, exact for stiffness and 
 Bathe, Finite Element Procedures (2014), sections 5.3, 5.5 and 6.3.
 
 Axes x to the right, z up. Displacements have shape (n, 2); in vectors and matrices of all unknowns the order
-is u_x of node 0, u_z of node 0, u_x of node 1, ... Loads point along +x and +z; the internal force is the
-gradient of the strain energy, so equilibrium reads internal force = load.
+is u_x of node 0, u_z of node 0, u_x of node 1, ...
 """
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import SuperLU, splu
-from skfem import (
-    Basis,
-    BilinearForm,
-    ElementQuad1,
-    ElementQuad2,
-    ElementVector,
-    MeshQuad,
-)
+from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementVector, MeshQuad
 from skfem.helpers import ddot, sym_grad, trace
 
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import elasticity
+from mesh.container import ContainerMesh
 
 _ELEMENTS = {1: ElementQuad1, 2: ElementQuad2}
 _QUADRATURE_DEGREE = 5  # in each direction: 3 x 3 Gauss points
 _ENOUGH_DEGREE = 3  # 2 x 2 points, exact for the stiffness and mass of bilinear parallelograms
-
-
-class QuadMesh(Protocol):
-    """The part of a checked mesh (`mesh.container.ContainerMesh`) that the assembly uses."""
-
-    @property
-    def points(self) -> NDArray[np.floating]: ...  #: (n, 2) [m]
-
-    @property
-    def quads(self) -> NDArray[np.integer]: ...  #: (m, 4), counter-clockwise
-
-    @property
-    def region(self) -> NDArray[np.integer]: ...  #: (m,)
-
-    @property
-    def box(self) -> NDArray[np.integer]: ...  #: (m,)
-
-    @property
-    def thickness(self) -> NDArray[np.floating]: ...  #: (m,), out of plane [m]
-
-    @property
-    def areal_density(self) -> NDArray[np.floating]: ...  #: (m,) [kg per m2 of elevation]
 
 
 @BilinearForm
@@ -72,14 +43,11 @@ def _stiffness_form(u: Any, v: Any, w: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FiniteElements:
-    """The elements of a container: its nodes, its constant matrices and its large-rotation forces.
+    """The elements of a container: its nodes, its constant matrices and its stresses.
 
-    `nodes[: len(points)]` are the points of the mesh, in their order; order 2 adds edge and cell middles.
+    `nodes[: len(points)]` are the points of the mesh, in their order; order 2 (biquadratic) adds edge and cell middles.
     """
 
-    order: int  #: 1 bilinear, 2 biquadratic
-    youngs_modulus: float  #: [Pa]
-    poisson_ratio: float  #: [-]
     nodes: FloatArray  #: reference positions of all nodes, shape (n, 2) [m]
     cells: IntArray  #: nodes of each cell in VTK's order (quad, biquadratic quad), shape (m, 4 | 9)
     region: NDArray[np.integer]  #: region of each cell, shape (m,)
@@ -126,8 +94,24 @@ class FiniteElements:
 
     @cached_property
     def _recovery(self) -> csr_array:
-        """Values at the quadrature points -> averaged nodes, (n, m q)."""
-        return _recovery_operator(self._basis, self.cells, np.asarray(self.thickness, dtype=float))
+        """Values at the quadrature points -> fitted in each cell, averaged at the nodes, shape (n, m q)."""
+        basis, cells, thickness = self._basis, self.cells, np.asarray(self.thickness, dtype=float)
+        places = (basis.X, basis.elem.doflocs.T)
+        bilinear = [np.stack([np.ones_like(X), X, Z, X * Z], axis=1) for X, Z in places]
+        fit = bilinear[1] @ np.linalg.pinv(bilinear[0])  # (k, q)
+        greatest = np.zeros(basis.N)
+        np.maximum.at(greatest, cells, thickness[:, None])
+        thickest = thickness[:, None] >= (1.0 - 1e-9) * greatest[cells]
+        share = np.where(thickest, basis.dx.sum(axis=1)[:, None], 0.0)
+        values = share[:, :, None] * fit  # (m, k, q)
+        rows = np.broadcast_to(cells[:, :, None], values.shape)
+        points = np.broadcast_to(np.arange(basis.dx.size).reshape(len(cells), 1, -1), values.shape)
+        summed = coo_array((values.ravel(), (rows.ravel(), points.ravel())), shape=(basis.N, basis.dx.size))
+        total = np.zeros(basis.N)
+        np.add.at(total, cells, share)
+        recovery = (diags_array(1.0 / total) @ summed).tocsr()
+        recovery.eliminate_zeros()
+        return recovery
 
     @cached_property
     def blocks(self) -> elasticity.CellBlocks:
@@ -160,41 +144,6 @@ class FiniteElements:
         places = nodes.ravel(), nodes.swapaxes(1, 2).ravel()
         return coo_array((masses.ravel(), places), shape=(len(self.nodes), len(self.nodes))).tocsr()
 
-    def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
-        """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
-        force = np.empty_like(self.nodes)
-        energy = elasticity.element_forces(
-            elasticity.with_own_scratch(self.blocks),
-            self.lame.first,
-            self.lame.shear,
-            np.ascontiguousarray(displacement, dtype=float),
-            force,
-        )
-        return force, energy
-
-    def internal_force(self, displacement: FloatArray) -> FloatArray:
-        """Gradient of the strain energy, shape (n, 2) [N]."""
-        return self.force_and_energy(displacement)[0]
-
-    def strain_energy(self, displacement: FloatArray) -> float:
-        """Strain energy [J]; never negative."""
-        return self.force_and_energy(displacement)[1]
-
-    def tangent(self, displacement: FloatArray) -> csc_array:
-        """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
-        moduli = elasticity.first_stress_tangent(self.displacement_gradient(displacement), self.lame)
-        cells, k = self.cells.shape
-        moduli = moduli * self.weights
-        shapes = self.gradient
-        rows = shapes.transpose(1, 3, 0, 2).reshape(cells, k, -1)
-        blocks = np.empty((cells, k, 2, k, 2))
-        for i, p in np.ndindex(2, 2):
-            columns = np.einsum("jlcq,lcqb->cjqb", moduli[i, :, p], shapes).reshape(cells, -1, k)
-            blocks[:, :, i, :, p] = rows @ columns
-        unknowns = (2 * self.cells[:, :, None] + np.arange(2)).reshape(cells, -1)
-        positions = (np.repeat(unknowns, 2 * k, axis=1).ravel(), np.tile(unknowns, 2 * k).ravel())
-        return coo_array((blocks.ravel(), positions), shape=self.stiffness.shape).tocsc()
-
     def nodal_stress(self, displacement: FloatArray) -> FloatArray:
         """Cauchy stress at the nodes, shape (n, 3): xx, zz, xz in the axes of space [Pa].
 
@@ -214,18 +163,22 @@ class FiniteElements:
         return np.einsum("jcqb,cbi->ijcq", self.gradient, np.asarray(displacement)[self.cells], optimize=True)
 
 
-def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, order: int) -> FiniteElements:
+def assemble(
+    mesh: ContainerMesh, *, youngs_modulus: float, poisson_ratio: float, order: int
+) -> FiniteElements:
     """The finite elements of a mesh, assembled on first use; ValueError: elastic constants out of range."""
     lame = elasticity.plane_stress_lame(youngs_modulus, poisson_ratio)
-    basis = _scalar_basis(mesh, order)
+    points = np.ascontiguousarray(np.asarray(mesh.points, dtype=float).T)
+    quads = np.ascontiguousarray(np.asarray(mesh.quads, dtype=np.int64).T)
+    a, b, c, d = (points[:, corner] for corner in quads)
+    skewed = np.abs(a - b + c - d).max() > 1e-9 * np.ptp(points, axis=1).max()
+    degree = _QUADRATURE_DEGREE if order == 2 or skewed else _ENOUGH_DEGREE
+    basis = Basis(MeshQuad(points, quads), _ELEMENTS[order](), intorder=degree)
     cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
     nodes = np.ascontiguousarray(basis.doflocs.T)
     nodes[: len(mesh.points)] = mesh.points  # exactly, not through the mapping
     base = np.flatnonzero(np.abs(nodes[:, 1]) <= 1e-9 * np.ptp(nodes[:, 1]))
     return FiniteElements(
-        order=order,
-        youngs_modulus=youngs_modulus,
-        poisson_ratio=poisson_ratio,
         nodes=nodes,
         cells=cells,
         region=np.asarray(mesh.region),
@@ -245,33 +198,6 @@ def factorised(matrix: csc_array) -> SuperLU:
     )
 
 
-def _scalar_basis(mesh: QuadMesh, order: int) -> Basis:
-    points = np.ascontiguousarray(np.asarray(mesh.points, dtype=float).T)
-    quads = np.ascontiguousarray(np.asarray(mesh.quads, dtype=np.int64).T)
-    a, b, c, d = (points[:, corner] for corner in quads)
-    skewed = np.abs(a - b + c - d).max() > 1e-9 * np.ptp(points, axis=1).max()
-    degree = _QUADRATURE_DEGREE if order == 2 or skewed else _ENOUGH_DEGREE
-    return Basis(MeshQuad(points, quads), _ELEMENTS[order](), intorder=degree)
-
-
 def _at_points(basis: Basis, values: NDArray[np.floating]) -> FloatArray:
     """One value a cell, repeated at its quadrature points, shape (m, q)."""
     return np.repeat(np.asarray(values, dtype=float)[:, None], basis.X.shape[1], axis=1)
-
-
-def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_array:
-    """Values at the quadrature points -> fitted in each cell, averaged at the nodes, shape (n, m q)."""
-    bilinear = [np.stack([np.ones_like(X), X, Z, X * Z], axis=1) for X, Z in (basis.X, basis.elem.doflocs.T)]
-    fit = bilinear[1] @ np.linalg.pinv(bilinear[0])  # (k, q)
-    greatest = np.zeros(basis.N)
-    np.maximum.at(greatest, cells, thickness[:, None])
-    share = np.where(thickness[:, None] >= (1.0 - 1e-9) * greatest[cells], basis.dx.sum(axis=1)[:, None], 0.0)
-    values = share[:, :, None] * fit  # (m, k, q)
-    rows = np.broadcast_to(cells[:, :, None], values.shape)
-    points = np.broadcast_to(np.arange(basis.dx.size).reshape(len(cells), 1, -1), values.shape)
-    summed = coo_array((values.ravel(), (rows.ravel(), points.ravel())), shape=(basis.N, basis.dx.size))
-    total = np.zeros(basis.N)
-    np.add.at(total, cells, share)
-    recovery = (diags_array(1.0 / total) @ summed).tocsr()
-    recovery.eliminate_zeros()
-    return recovery

@@ -101,12 +101,8 @@ def factor_blocks(
         pivots[j, 0], pivots[j, 1], pivots[j, 2], pivots[j, 3] = dxx, dxz, dxz, dzz
         share = 1.0 / (dxx * dzz - dxz * dxz)
         ixx, ixz, izz = share * dzz, -share * dxz, share * dxx
-        inverse_pivots[j, 0], inverse_pivots[j, 1], inverse_pivots[j, 2], inverse_pivots[j, 3] = (
-            ixx,
-            ixz,
-            ixz,
-            izz,
-        )
+        inverse_pivots[j, 0], inverse_pivots[j, 1] = ixx, ixz
+        inverse_pivots[j, 2], inverse_pivots[j, 3] = ixz, izz
         for at in range(begin, end):
             i = rows[at]
             a, b, c, d = work[i, 0], work[i, 1], work[i, 2], work[i, 3]

@@ -189,27 +189,6 @@ def element_forces(
     return energy
 
 
-def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
-    """Derivative of P = F S: A[i, j, k, l] = d P_ij / d H_kl, shape (2, 2, 2, 2, ...) [Pa].
-
-    A_ijkl = delta_ik S_jl + first F_ij F_kl + shear (F_il F_kj + (F F^T)_ik delta_jl).
-    """
-    sxx, szz, sxz = second_stress(green_strain(gradient), lame)
-    stress = ((sxx, sxz), (sxz, szz))
-    deformation = gradient.copy()
-    deformation[0, 0] += 1.0
-    deformation[1, 1] += 1.0
-    tangent = lame.first * np.einsum("ij...,kl...->ijkl...", deformation, deformation)
-    tangent += lame.shear * np.einsum("il...,kj...->ijkl...", deformation, deformation)
-    left = lame.shear * np.einsum("im...,km...->ik...", deformation, deformation)
-    for j in range(2):
-        tangent[:, j, :, j] += left
-        for l in range(2):  # noqa: E741 - the fourth index of the tensor
-            for i in range(2):
-                tangent[i, j, i, l] += stress[j][l]
-    return tangent
-
-
 def least_principal_strain(gradient: FloatArray) -> float:
     """Smallest principal value of the linear strain over gradients of shape (2, 2, ...) [-]; < 0 in compression."""
     (xx, xz), (zx, zz) = gradient

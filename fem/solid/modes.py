@@ -53,10 +53,37 @@ def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
     equals, by node).
     """
     rigid = rigid_modes(elements).reshape(3, -1)
+    mass, stiffness = elements.vector_mass, elements.stiffness
+    # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
+    # both the factor well conditioned and the wanted modes apart.
+    shift = _first_square_estimate(elements, rigid)
     if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
-        squares, vectors = _dense_modes(elements, rigid, count)
+        # the same inversion on a basis of the rigid modes' complement, orthonormal in K + shift M
+        upper = cholesky((stiffness + shift * mass).toarray())
+        basis = solve_triangular(upper, qr(upper @ rigid.T)[0][:, 3:])
+        compliance = basis.T @ (mass @ basis)
+        last = len(compliance) - 1
+        inverses, vectors = eigh(0.5 * (compliance + compliance.T), subset_by_index=(last + 1 - count, last))
+        squares, vectors = 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
     else:
-        squares, vectors = _lanczos_modes(elements, rigid, count)
+        factor = factorised(stiffness + shift * mass)
+
+        def solve(momentum: FloatArray) -> FloatArray:
+            return _without_rigid_motion(factor.solve(momentum), rigid, mass)
+
+        # Without symmetry, so that no mode is missed.
+        start = np.random.default_rng(0).standard_normal(elements.unknowns)
+        squares, vectors = eigsh(
+            stiffness,
+            k=count,
+            M=mass,
+            sigma=-shift,
+            OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
+            v0=_without_rigid_motion(start, rigid, mass),
+            ncv=min(elements.unknowns, 2 * count + 20),
+        )
+        rising = np.argsort(squares, kind="stable")
+        squares, vectors = squares[rising], vectors[:, rising]
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
     return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * signs_of(shapes))
@@ -85,43 +112,6 @@ def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> 
     path = folder / "modes.vtu"
     write_atomically(path, file.frame(shapes))
     return path
-
-
-def _dense_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """The same inversion on a basis of the rigid modes' complement, orthonormal in K + shift M."""
-    mass, shift = elements.vector_mass, _first_square_estimate(elements, rigid)
-    upper = cholesky((elements.stiffness + shift * mass).toarray())
-    basis = solve_triangular(upper, qr(upper @ rigid.T)[0][:, 3:])
-    compliance = basis.T @ (mass @ basis)
-    last = len(compliance) - 1
-    inverses, vectors = eigh(0.5 * (compliance + compliance.T), subset_by_index=(last + 1 - count, last))
-    return 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
-
-
-def _lanczos_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    mass, stiffness = elements.vector_mass, elements.stiffness
-    shift = _first_square_estimate(elements, rigid)
-
-    # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
-    # both the factor well conditioned and the wanted modes apart.
-    factor = factorised(stiffness + shift * mass)
-
-    def solve(momentum: FloatArray) -> FloatArray:
-        return _without_rigid_motion(factor.solve(momentum), rigid, mass)
-
-    # Without symmetry, so that no mode is missed.
-    start = np.random.default_rng(0).standard_normal(elements.unknowns)
-    squares, vectors = eigsh(
-        stiffness,
-        k=count,
-        M=mass,
-        sigma=-shift,
-        OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
-        v0=_without_rigid_motion(start, rigid, mass),
-        ncv=min(elements.unknowns, 2 * count + 20),
-    )
-    rising = np.argsort(squares, kind="stable")
-    return squares[rising], vectors[:, rising]
 
 
 def _first_square_estimate(elements: FiniteElements, rigid: FloatArray) -> float:

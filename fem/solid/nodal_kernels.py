@@ -1,4 +1,4 @@
-"""Compiled step of the full model: every node free to move, total Lagrangian, without assembling a tangent.
+"""Compiled step of the full model, of one body and of a loose stack: every node free to move, no tangent assembled.
 
 The functions that `contact.stepping.body` asks of a body, for `fem.solid.nodal_body`: internal forces cell by cell,
 products with mass and stiffness, and one back-substitution for each iteration, with the factors of the turned Newmark
@@ -16,6 +16,7 @@ from contact.interface.compliance import add_turned
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
+from contact.stepping import stack_body
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
     CENTRE_X,
@@ -34,6 +35,7 @@ from contact.stepping.body import (
 )
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.scheme import Scheme
+from contact.stepping.stack_body import complete_compiled
 from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.block_factor import BlockPattern, substitute_blocks
@@ -333,5 +335,36 @@ def shift_velocity(body: NodalBody, state: State, frame: Frame, boxes: Boxes) ->
         state.velocity[2 * i + 1] -= lift_velocity - spin * state.position[2 * i]
 
 
+@struct
+class NodalStack(NamedTuple):
+    """The nodes of N boxes."""
+
+    boxes: tuple[NodalBody, ...]
+    starts: IntArray  #: (N + 1,) first coordinate of a box
+    monitors: IntArray  #: (N, 2) first monitored point of a box, and the one behind its last
+    energy: FloatArray  #: (N, 3) scratch
+
+
+@implements(stack_body.box_of, NodalStack, inline=True)
+def box_of(stack: NodalStack, b: int) -> NodalBody:
+    """One of the boxes."""
+    return stack.boxes[b]
+
+
+for operation in ("predict", "release", "respond", "complete", "observe", "shift_velocity"):
+    implements(getattr(interface, operation), NodalStack)(getattr(stack_body, operation))
+
+
+@compiled(sources=SOURCES)
+@implements(interface.prepared, NodalStack)
+def prepared_stack(stack: NodalStack, step: float) -> bool:
+    """The factors of this step size are at hand for all boxes."""
+    ready = True
+    for b in range(len(stack.boxes)):
+        ready = ready and prepared(stack.boxes[b], step)
+    return ready
+
+
+complete_nodal_stack = compiled(complete_compiled.py_func, sources=SOURCES)
 advance_nodal = compiled(advance, sources=SOURCES)
 enter_floor_frame_nodal = compiled(enter_floor_frame, sources=SOURCES)

@@ -18,12 +18,11 @@ from fem.solid.modes import elastic_modes, rigid_modes
 
 #: relative mass below which an attachment mode, less its projection on the others, is rounding noise
 INDEPENDENT = 1e-10
-#: largest elastic displacement used to probe the stress of a shape, over the size of the container
-PROBE = 1e-6
-#: loads solved at a time: the solver is no faster per load with more
-LOADS = 32
-#: multiplications in one product of dense rows: a few seconds
-PRODUCT = 50_000_000_000
+PROBE = (
+    1e-6  #: largest elastic displacement that probes the stress of a shape, over the size of the container
+)
+LOADS = 32  #: solved at a time: the solver is no faster per load with more
+PRODUCT = 50_000_000_000  #: multiplications in one product of dense rows: a few seconds
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,13 +102,6 @@ def reduced_basis(elements: FiniteElements, response: StaticResponse, modes: int
     shapes = np.empty_like(columns)
     _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]))
     shapes = shapes.reshape(squares.size, -1, 2)
-    return ReducedBasis(
-        angular_frequencies=np.sqrt(squares), shapes=shapes, stress=_stress_of(elements, shapes)
-    )
-
-
-def _stress_of(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
-    """Stress of each shape at the nodes, (3, m, n)."""
     stress = np.zeros((3, len(shapes), len(elements.nodes)))
     size = float(np.ptp(elements.nodes, axis=0).max())
     for k, shape in enumerate(shapes):
@@ -117,13 +109,13 @@ def _stress_of(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
         # The difference of both signs leaves the part of the stress that is linear in the displacement.
         both = elements.nodal_stress(probe * shape) - elements.nodal_stress(-probe * shape)
         stress[:, k] = both.T / (2.0 * probe)
-    return stress
+    return ReducedBasis(angular_frequencies=np.sqrt(squares), shapes=shapes, stress=stress)
 
 
 def _products(rows: FloatArray, matrix: csc_array) -> FloatArray:
     """rows matrix rows^T, symmetric to the bit."""
     products = np.empty((len(rows), len(rows)))
-    for block in blocks(len(rows), _affordable(rows)):
+    for block in blocks(len(rows), max(1, PRODUCT // rows.size)):
         products[block] = (rows[block] @ matrix) @ rows.T
     return 0.5 * (products + products.T)
 
@@ -133,7 +125,7 @@ def _combine(
 ) -> None:
     """Sum of two products of coefficients and rows, into `target`."""
     (factors, rows), (more_factors, more_rows) = first, second
-    for block in blocks(len(target), _affordable(rows)):
+    for block in blocks(len(target), max(1, PRODUCT // rows.size)):
         target[block] = factors[block] @ rows + more_factors[block] @ more_rows
 
 
@@ -141,8 +133,3 @@ def blocks(count: int, largest: int) -> Iterator[slice]:
     """Slices of at most `largest` that cover `count` items; they depend on sizes alone, never on speed."""
     for first in range(0, count, largest):
         yield slice(first, min(first + largest, count))
-
-
-def _affordable(rows: FloatArray) -> int:
-    """How many rows to multiply with all of them at a time."""
-    return max(1, PRODUCT // rows.size)

@@ -1,13 +1,18 @@
-"""Consistent loads on finite elements, and distances from a field: what verification asks and no run does."""
+"""Loads on finite elements, their forces and tangent, distances from a field: what verification asks and no run does.
+
+Loads point along +x and +z; the internal force is the gradient of the strain energy: in equilibrium it is the load.
+"""
 
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array, csc_array
 from skfem import Basis, FacetBasis, LinearForm
 
 from fem.runtime.arrays import FloatArray
+from fem.solid import elasticity
 from fem.solid.assembly import FiniteElements
 
 #: a field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...)
@@ -15,6 +20,46 @@ VectorField = Callable[[FloatArray, FloatArray], Any]
 #: (x, z) of the midpoints of edges -> whether each edge is chosen
 EdgeChoice = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
 DEGREE = 5  #: of the quadrature
+
+
+def force_and_energy(elements: FiniteElements, displacement: FloatArray) -> tuple[FloatArray, float]:
+    """Gradient of the strain energy by the displacements (n, 2) [N], and the energy itself [J]."""
+    blocks, force = elasticity.with_own_scratch(elements.blocks), np.empty_like(elements.nodes)
+    values = np.ascontiguousarray(displacement, dtype=float)
+    return force, elasticity.element_forces(blocks, elements.lame.first, elements.lame.shear, values, force)
+
+
+def internal_force(elements: FiniteElements, displacement: FloatArray) -> FloatArray:
+    """Gradient of the strain energy, shape (n, 2) [N]."""
+    return force_and_energy(elements, displacement)[0]
+
+
+def tangent(elements: FiniteElements, displacement: FloatArray) -> csc_array:
+    """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m].
+
+    Of P = F S: d P_ij / d H_kl = delta_ik S_jl + first F_ij F_kl + shear (F_il F_kj + (F F^T)_ik delta_jl).
+    """
+    gradient, lame = elements.displacement_gradient(displacement), elements.lame
+    sxx, szz, sxz = elasticity.second_stress(elasticity.green_strain(gradient), lame)
+    stress = ((sxx, sxz), (sxz, szz))
+    deformation = gradient + np.eye(2)[:, :, None, None]
+    moduli = lame.first * np.einsum("ij...,kl...->ijkl...", deformation, deformation)
+    moduli += lame.shear * np.einsum("il...,kj...->ijkl...", deformation, deformation)
+    left = lame.shear * np.einsum("im...,km...->ik...", deformation, deformation)
+    for j in range(2):
+        moduli[:, j, :, j] += left
+        for i, l in np.ndindex(2, 2):  # noqa: E741 - the fourth index of the tensor
+            moduli[i, j, i, l] += stress[j][l]
+    moduli *= elements.weights
+    cells, k = elements.cells.shape
+    rows = elements.gradient.transpose(1, 3, 0, 2).reshape(cells, k, -1)
+    blocks = np.empty((cells, k, 2, k, 2))
+    for i, p in np.ndindex(2, 2):
+        columns = np.einsum("jlcq,lcqb->cjqb", moduli[i, :, p], elements.gradient).reshape(cells, -1, k)
+        blocks[:, :, i, :, p] = rows @ columns
+    unknowns = (2 * elements.cells[:, :, None] + np.arange(2)).reshape(cells, -1)
+    positions = (np.repeat(unknowns, 2 * k, axis=1).ravel(), np.tile(unknowns, 2 * k).ravel())
+    return coo_array((blocks.ravel(), positions), shape=elements.stiffness.shape).tocsc()
 
 
 def area_load(elements: FiniteElements, density: VectorField) -> FloatArray:

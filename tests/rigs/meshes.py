@@ -1,11 +1,12 @@
 """Meshes of the checks: images of the unit square, a block with a graded base, a bar."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-from fem.runtime.arrays import FloatArray, IntArray
+from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, grid_quads
 from mesh.elevation import Elevation
 from mesh.region import Region
@@ -13,26 +14,14 @@ from mesh.region import Region
 Mapping = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PlainMesh:
-    """What the assembly needs of a mesh; it has no mass, base or quality."""
-
-    points: FloatArray  #: (n, 2) [m]
-    quads: IntArray  #: (m, 4), counter-clockwise
-    region: IntArray  #: (m,)
-    box: IntArray  #: (m,)
-    thickness: FloatArray  #: (m,) [m]
-    areal_density: FloatArray  #: (m,) [kg/m2]
-
-
 def mapped_mesh(
     columns: int, rows: int, mapping: Mapping, *, thickness: float = 1.0, density: float = 1.0
-) -> PlainMesh:
-    """Quads on the image of the unit square under `mapping`(s, t); density in kg/m3."""
+) -> Any:
+    """Quads on the image of the unit square under `mapping`(s, t), for the assembly alone; density in kg/m3."""
     s, t = np.meshgrid(np.linspace(0.0, 1.0, columns + 1), np.linspace(0.0, 1.0, rows + 1))
     quads = grid_quads(columns, rows)
     full = np.ones(len(quads))
-    return PlainMesh(
+    return SimpleNamespace(
         points=np.stack(mapping(s.ravel(), t.ravel()), axis=1),
         quads=quads,
         region=np.zeros(len(quads), dtype=np.int64),

@@ -72,14 +72,8 @@ def gmsh_4_text(mesh: ContainerMesh) -> str:
     lines += ["$EndPhysicalNames", "$Entities", f"0 1 {len(regions)} 0", "1 0 0 0 1 0 0 1 99 0"]
     lines += [f"{each + 1} 0 0 0 1 2 0 1 {GROUPS[each.name.lower()]} 0" for each in regions]
     count = len(mesh.points)
-    lines += [
-        "$EndEntities",
-        "$Nodes",
-        f"1 {count} 1 {count}",
-        f"2 1 0 {count}",
-        *map(str, range(1, count + 1)),
-    ]
-    lines += [f"{x!r} {z!r} 0" for x, z in mesh.points.tolist()]
+    lines += ["$EndEntities", "$Nodes", f"1 {count} 1 {count}", f"2 1 0 {count}"]
+    lines += [*map(str, range(1, count + 1)), *(f"{x!r} {z!r} 0" for x, z in mesh.points.tolist())]
     total = len(base) - 1 + len(mesh.quads)
     lines += ["$EndNodes", "$Elements", f"{1 + len(regions)} {total} 1 {total}", f"1 1 1 {len(base) - 1}"]
     lines += [f"{n + 1} {base[n]} {base[n + 1]}" for n in range(len(base) - 1)]

@@ -1,10 +1,12 @@
-"""Columns of numbers: what is understood, and one message for each way to be wrong."""
+"""Columns of numbers: what is understood; a file is read once as long as it stays as it is."""
 
+import os
 from pathlib import Path
 
 import pytest
 
 from fem.records.files import read_record
+from fem.records.record import RecordError
 
 G = 9.80665
 
@@ -47,19 +49,6 @@ def test_two_columns_of_the_usual_forms_are_read(tmp_path, text):
     assert found.values.tolist() == [1.5, -2.0, 3.0]
 
 
-def test_one_column_takes_its_interval_from_the_user(tmp_path):
-    found = only(table(tmp_path, "# station\n1.5\n-2\n3\n", sample_interval=0.25))
-    assert found.times.tolist() == [0.0, 0.25, 0.5] and found.values.tolist() == [1.5, -2.0, 3.0]
-
-
-def test_three_columns_are_time_horizontal_and_vertical(tmp_path):
-    record = table(tmp_path, "t [s]; H [g]; V [g]\n0;0,1;1\n1;0,2;2\n", unit=None)
-    horizontal = record.component("horizontal", quantity="acceleration")
-    vertical = record.component("vertical", quantity="acceleration")
-    assert horizontal.values.tolist() == pytest.approx([0.1 * G, 0.2 * G])
-    assert vertical.values.tolist() == pytest.approx([G, 2.0 * G])
-
-
 @pytest.mark.parametrize(
     ("unit", "factor"), [("m/s2", 1.0), ("g", G), ("cm/s2", 0.01), ("gal", 0.01), ("mm/s2", 1e-3), ("m", 1.0)]
 )
@@ -79,3 +68,17 @@ def test_no_message_quotes_what_is_in_the_file(tmp_path):
 def test_files_of_the_kernel_that_never_end_are_taken_at_the_size_they_state():
     with pytest.raises(ValueError, match="the file is empty"):
         read_record(Path("/proc/self/status"))
+
+
+def test_a_file_is_read_again_only_when_it_changed(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text("0.0,1.0\n0.1,2.0\n")
+    first = read_record(path, unit="g")
+    assert read_record(path, unit="g") is first
+    assert read_record(path, unit="m/s2") is not first
+    path.write_text("0.0,1.0\n0.1,3.0\n")
+    os.utime(path, ns=(1, 1))  # of the same size; a clock may be too coarse to tell two writings apart
+    assert read_record(path, unit="g").components[0].readings[1] == 3.0
+    path.unlink()
+    with pytest.raises(RecordError, match="does not exist"):
+        read_record(path, unit="g")

@@ -22,10 +22,6 @@ def written(name):
     return form, values, form.text(values, SECOND, THIRD)
 
 
-def horizontal(record):
-    return record.component("horizontal", quantity="acceleration")
-
-
 def first_of(record):
     return record.component("horizontal", quantity="acceleration", channel="1")
 

@@ -1,13 +1,15 @@
-"""Assembled matrices and forces: against closed forms and differences."""
+"""Assembled matrices and forces against closed forms and differences; the outline as edges and lines through them."""
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.sparse.linalg
-from loads import edge_load
+from loads import edge_load, force_and_energy, internal_force, tangent
 
 from fem.solid.assembly import assemble
+from fem.solid.edges import chained, outline_edges
 from mesh.container import grid_quads
 
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
@@ -84,7 +86,7 @@ def test_stiffness_is_the_tangent_at_rest_and_leaves_three_rigid_motions_free(or
     stiffness = elements.stiffness.toarray()
     scale = np.abs(stiffness).max()
     assert np.abs(stiffness - stiffness.T).max() < 1e-14 * scale
-    assert np.abs(elements.tangent(np.zeros_like(elements.nodes)) - elements.stiffness).max() < 1e-14 * scale
+    assert np.abs(tangent(elements, np.zeros_like(elements.nodes)) - elements.stiffness).max() < 1e-14 * scale
     values = np.linalg.eigvalsh(stiffness)
     assert np.abs(values[:3]).max() < 1e-12 * values[-1]
     assert values[3] > 1e-7 * values[-1]  # no hourglass
@@ -96,9 +98,9 @@ def test_internal_force_is_the_derivative_of_the_strain_energy(order, strain):
     elements = assemble(distorted_mesh(2, 3), order=order, **STEEL)
     displacement = strained_and_turned(elements, strain)
     direction = np.random.default_rng(1).standard_normal(displacement.shape)
-    force = elements.internal_force(displacement)
+    force = internal_force(elements, displacement)
     step = 1e-3 * strain
-    ahead, behind = (elements.strain_energy(displacement + s * step * direction) for s in (1, -1))
+    ahead, behind = (force_and_energy(elements, displacement + s * step * direction)[1] for s in (1, -1))
     scale = np.linalg.norm(force) * np.linalg.norm(direction)
     assert abs((ahead - behind) / (2 * step) - np.sum(force * direction)) < 1e-5 * scale
 
@@ -110,8 +112,8 @@ def test_tangent_is_the_derivative_of_the_internal_force(order, strain):
     displacement = strained_and_turned(elements, strain)
     direction = np.random.default_rng(1).standard_normal(displacement.shape)
     step = 1e-6
-    ahead, behind = (elements.internal_force(displacement + s * step * direction) for s in (1, -1))
-    product = elements.tangent(displacement) @ direction.ravel()
+    ahead, behind = (internal_force(elements, displacement + s * step * direction) for s in (1, -1))
+    product = tangent(elements, displacement) @ direction.ravel()
     error = (ahead - behind).ravel() / (2 * step) - product
     assert np.abs(error).max() < 1e-8 * np.abs(product).max()
 
@@ -120,7 +122,7 @@ def test_tangent_is_the_derivative_of_the_internal_force(order, strain):
 def test_internal_force_of_a_free_body_has_no_resultant_and_no_moment(order):
     elements = assemble(distorted_mesh(), order=order, **STEEL)
     displacement = strained_and_turned(elements, strain=0.02)
-    force, place = elements.internal_force(displacement), elements.nodes + displacement
+    force, place = internal_force(elements, displacement), elements.nodes + displacement
     assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
     moments = place[:, 1] * force[:, 0] - place[:, 0] * force[:, 1]
     assert abs(moments.sum()) < 1e-12 * np.abs(moments).sum()
@@ -173,3 +175,16 @@ def test_stress_of_a_thick_wall_is_not_smeared_into_the_sheet(order):
     pull = 1e-8 * np.where(np.abs(x) <= 0.1, x, 2.0 * x - 0.1 * np.sign(x))
     stress = elements.nodal_von_mises(np.stack([pull, 0.0 * pull], axis=1))
     assert stress == pytest.approx(np.where(np.abs(x) < 0.1 + 1e-9, 1e3, 2e3), rel=1e-6)
+
+
+def test_the_outline_is_the_outer_edges_and_the_joints():
+    # Two boxes of one cell each, one on the other.
+    points = np.array([[x, z] for z in (0.0, 0.5, 1.0, 1.5, 2.0) for x in (0.0, 0.5, 1.0)])
+    lowest = np.array([0, 2, 8, 6, 1, 5, 7, 3, 4])
+    for kinds, length in (([0, 0], 6.0), ([0, 1], 7.0)):
+        edges = outline_edges(np.array([lowest, lowest + 6]), np.array(kinds))
+        assert np.linalg.norm(np.diff(points[edges], axis=1)[:, 0], axis=1).sum() == pytest.approx(length)
+    lines = chained(edges)
+    drawn = sorted(tuple(sorted(pair)) for line in lines for pair in pairwise(line))
+    assert drawn == sorted(tuple(sorted(pair)) for pair in edges.tolist())
+    assert len(lines) <= 2
