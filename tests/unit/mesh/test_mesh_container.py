@@ -1,13 +1,17 @@
-"""The structured mesh: where its cells and lines lie, what it weighs, how it resists rotation."""
+"""The structured mesh: where its cells and lines lie, what it weighs, how it resists rotation; quality of cells."""
 
-import dataclasses
+import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from mesh.cells import areas_and_centroids, quadrature, signed_areas
 from mesh.container import ContainerMesh, build_container_mesh
-from mesh.elevation import Elevation, scaled_jacobian
+from mesh.elevation import Elevation, corner_angles, require_quality, scaled_jacobian
+from mesh.errors import MeshQualityError
 from mesh.files import require_tiling
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
@@ -16,6 +20,7 @@ from mesh.region import Region
 STACK = ContainerGeometry(width=1.1, height=1.0, depth=1.2, boxes=4, wall=0.008)
 BLOCK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, boxes=4, section=Section.SOLID)
 FILL = MassFill(mass=2500.0, centroid_height=0.5)
+QUAD = np.array([[0, 1, 2, 3]])
 
 
 def block(element_size: float = 0.25) -> ContainerMesh:
@@ -28,7 +33,7 @@ def distorted_block() -> ContainerMesh:
     points = mesh.points.copy()
     inside = (np.abs(points[:, 0]) < 0.549) & (points[:, 1] > 0.001) & (points[:, 1] < 3.999)
     points[inside] += np.random.default_rng(1).uniform(-0.06, 0.06, (inside.sum(), 2))
-    return dataclasses.replace(mesh, elevation=Elevation(points, mesh.quads))
+    return replace(mesh, elevation=Elevation(points, mesh.quads))
 
 
 @pytest.mark.parametrize("mesh", [block(1.0), block(), distorted_block()])
@@ -46,10 +51,10 @@ def test_quadrature_integrates_quadratics_over_any_quadrilateral():
     start, stop = points, np.roll(points, -1, axis=0)
     x0, x1 = start[:, 0], stop[:, 0]
     exact = ((stop - start)[:, 1] * (x0**3 + x0**2 * x1 + x0 * x1**2 + x1**3) / 12.0).sum()
-    positions, weights = quadrature(points, np.array([[0, 1, 2, 3]]))
+    positions, weights = quadrature(points, QUAD)
     assert (weights * positions[..., 0] ** 2).sum() == pytest.approx(exact, rel=1e-14)
-    area, centroid = areas_and_centroids(points, np.array([[0, 1, 2, 3]]))
-    assert area == pytest.approx(signed_areas(points, np.array([[0, 1, 2, 3]])), rel=1e-14)
+    area, centroid = areas_and_centroids(points, QUAD)
+    assert area == pytest.approx(signed_areas(points, QUAD), rel=1e-14)
     assert centroid[0, 0] == pytest.approx(
         ((stop - start)[:, 1] * (x0**2 + x0 * x1 + x1**2) / 6.0).sum() / area[0], rel=1e-14
     )
@@ -89,3 +94,49 @@ def test_feet_end_on_a_base_point(foot):
     assert left == pytest.approx(right, rel=1e-12)
     assert left == pytest.approx(foot, rel=1.0 / 8.0)
     assert np.isclose(mesh.points[mesh.base_points, 0] + 0.55, left, rtol=1e-12, atol=0.0).any()
+
+
+def parallelogram(angle_degrees: float, length: float = 1.0, side: float = 1.0) -> np.ndarray:
+    """Corner angle at the origin, `length` along x, `side` up the slope."""
+    up = side * np.array([math.cos(math.radians(angle_degrees)), math.sin(math.radians(angle_degrees))])
+    return np.array([[0.0, 0.0], [length, 0.0], [length + up[0], up[1]], up])
+
+
+@given(length=st.floats(1e-3, 1e3), side=st.floats(2e-6, 1e3), turn=st.floats(0.0, 2.0 * math.pi))
+def test_rectangle_scores_one_however_thin_and_however_turned(length, side, turn):
+    c, s = math.cos(turn), math.sin(turn)
+    points = parallelogram(90.0, length, side) @ np.array([[c, s], [-s, c]])
+    # Rounding of the corners' positions, seen from the shorter side.
+    rounding = 1e-14 * max(length, side) / min(length, side)
+    assert scaled_jacobian(points, QUAD)[0] == pytest.approx(1.0, abs=max(1e-12, rounding**2, rounding))
+
+
+@given(angle=st.floats(5.0, 175.0), length=st.floats(0.01, 10.0), scale=st.sampled_from([1e-6, 1.0, 1e6]))
+def test_parallelogram_scores_the_sine_of_its_angle_at_any_size(angle, length, scale):
+    # Knupp (2000): the cross product of unit edge vectors.
+    points = scale * parallelogram(angle, length)
+    assert scaled_jacobian(points, QUAD)[0] == pytest.approx(math.sin(math.radians(angle)), rel=1e-9)
+    assert corner_angles(points, QUAD)[0] == pytest.approx([angle, 180 - angle, angle, 180 - angle], rel=1e-9)
+
+
+def test_worst_corner_counts():
+    # A right trapezium: 90, 90, 135 and 45 degrees.
+    points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    assert scaled_jacobian(points, QUAD)[0] == pytest.approx(math.sqrt(0.5), rel=1e-15)
+    assert sorted(corner_angles(points, QUAD)[0]) == pytest.approx([45.0, 90.0, 90.0, 135.0])
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]],  # two corners coincide
+        [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]],  # on a line
+        [[0.5, 0.5]] * 4,  # a point
+        [[0.0, 0.0], [1.0, 0.0], [0.5 + 1e-10, 0.866], [0.5, 0.866]],  # a triangle but for rounding
+        [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]],  # a bow tie
+        [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]],  # a corner that points inwards
+    ],
+)
+def test_cells_without_area_folded_or_with_an_inward_corner_are_refused(points):
+    with pytest.raises(MeshQualityError, match="inverted, folded or without area"):
+        require_quality(np.array(points), QUAD)

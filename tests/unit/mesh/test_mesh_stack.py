@@ -73,21 +73,11 @@ def test_loose_boxes_share_no_node_and_equal_boxes_are_alike():
     assert (lower.areal_density == upper.areal_density).all()
 
 
-def written(path, mesh, *, region="solid", merged=True):
-    """A mesh as a VTU file, with regions; not merged, each box has its own points."""
-    points, quads = mesh.points, mesh.quads
-    if not merged:
-        points = np.concatenate([points[np.unique(quads[mesh.box == k])] for k in np.unique(mesh.box)])
-        parts, first = [], 0
-        for k in np.unique(mesh.box):
-            used, own = np.unique(quads[mesh.box == k], return_inverse=True)
-            parts.append(own.reshape(-1, 4) + first)
-            first += len(used)
-        quads = np.concatenate(parts)
-    data = {"region": [np.full(len(quads), 3)]} if region else {}
-    meshio.Mesh(np.column_stack([points, np.zeros(len(points))]), [("quad", quads)], cell_data=data).write(
-        path
-    )
+def written(path, mesh, *, region=3):
+    """A mesh as a VTU file, with the number of a region."""
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    data = {"region": [np.full(len(mesh.quads), region)]} if region else {}
+    meshio.Mesh(points, [("quad", mesh.quads)], cell_data=data).write(path)
     return path
 
 
@@ -102,18 +92,20 @@ def test_a_stack_read_from_a_file_is_the_stack_written(tmp_path, loose):
 
 
 @pytest.mark.parametrize(
-    ("loose", "how", "boxes", "expected"),
+    ("loose", "apart", "boxes", "expected"),
     [
-        (True, {}, UNEQUAL, r"boxes 1 and 2 share 5 nodes, but loose boxes may not: give each box points and lines"),
-        (False, {"merged": False}, UNEQUAL, r"boxes 1 and 2 do not share the nodes of the face between them: merge"),
-        (False, {"region": ""}, UNEQUAL, r"boxes that differ, or that stand loose, need regions"),
-        (False, {}, (*UNEQUAL[:2], box(1.3, 0.5, 500.0, 0.0, 1.6)), r"the axis of box 3 is -0.05 m beside"),
-        (False, {}, (*UNEQUAL[:2], box(1.2, 0.5, 500.0, -0.05, 1.6)), r"the mesh is 1.3 m wide and 0.5 m high"),
-        (False, {}, (*UNEQUAL[:2], box(1.3, 0.4, 500.0, -0.05, 1.6)), r"cells lie in two boxes or above them"),
-        (False, {}, (*UNEQUAL, box(bottom=2.1)), r"box 4 has no cells, the case has 4 boxes"),
+        (True, False, UNEQUAL, r"boxes 1 and 2 share 5 nodes, but loose boxes may not: give each box points and lines"),
+        (False, True, UNEQUAL, r"boxes 1 and 2 do not share the nodes of the face between them: merge"),
+        (False, False, (*UNEQUAL[:2], box(1.3, 0.5, 500.0, 0.0, 1.6)), r"the axis of box 3 is -0.05 m beside"),
+        (False, False, (*UNEQUAL[:2], box(1.2, 0.5, 500.0, -0.05, 1.6)), r"the mesh is 1.3 m wide and 0.5 m high"),
+        (False, False, (*UNEQUAL[:2], box(1.3, 0.4, 500.0, -0.05, 1.6)), r"cells lie in two boxes or above them"),
+        (False, False, (*UNEQUAL, box(bottom=2.1)), r"box 4 has no cells, the case has 4 boxes"),
     ],
 )  # fmt: skip
-def test_a_file_that_is_not_the_stack_is_refused_in_words(tmp_path, loose, how, boxes, expected):
-    path = written(tmp_path / "stack.vtu", build_bolted_mesh(UNEQUAL, element_size=0.2), **how)
+def test_a_file_that_is_not_the_stack_is_refused_in_words(tmp_path, loose, apart, boxes, expected):
+    mesh = (build_loose_mesh if apart else build_bolted_mesh)(UNEQUAL, element_size=0.2)
+    path = tmp_path / "stack.vtu"
     with pytest.raises(MeshError, match=expected):
-        read_stack_mesh(path, boxes, loose=loose)
+        read_stack_mesh(written(path, mesh), boxes, loose=loose)
+    with pytest.raises(MeshError, match=r"boxes that differ, or that stand loose, need regions"):
+        read_stack_mesh(written(path, mesh, region=None), boxes, loose=loose)
