@@ -19,24 +19,10 @@ STEP = 2e-3
 COARSE = ("solver.model=full", "solver.element_size_m=0.55", "output.fields_s=0")
 THIN = """
 schema = 1
-[container]
-width_m = 0.04
-height_m = 0.12
-depth_m = 0.03
-boxes = 5
-density_kg_m3 = 4500.0
-wall_m = 1e-4
-[contact]
-mu_static = 0.0
-mu_kinetic = 0.0
-[motion]
-kind = "harmonic"
-peak_acceleration_m_s2 = 4.0
-frequency_Hz = 0.5
-[solver]
-model = "full"
-duration_s = 0.1
-element_size_m = 0.12
+container = { width_m = 0.04, height_m = 0.12, depth_m = 0.03, boxes = 5, density_kg_m3 = 4500.0, wall_m = 1e-4 }
+contact = { mu_static = 0.0, mu_kinetic = 0.0 }
+motion = { kind = "harmonic", peak_acceleration_m_s2 = 4.0, frequency_Hz = 0.5 }
+solver = { model = "full", duration_s = 0.1, element_size_m = 0.12 }
 """
 
 
