@@ -1,7 +1,7 @@
 """The case: one container, one base motion and the settings of the run, read once and frozen.
 
 `load_case` reads a file or a shipped case into a `Case`; all other modules work with its attributes. All values are SI,
-the unit is part of every key. Defaults are in `fem.case.tables`, what follows from several keys in `fem.case.content`.
+the unit is part of every key. Defaults are in `fem.case.tables`, what follows from several keys with them.
 """
 
 import hashlib
@@ -16,9 +16,9 @@ from pydantic import ConfigDict, PrivateAttr
 
 from fem.case import data_files
 from fem.case.case_rules import CASE_RULES
-from fem.case.content import CaseContent
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
+from fem.case.tables.all_tables import CaseContent
 from fem.case.tables.links import LINK_RULES, ROWS
 from fem.case.tables.neighbours import CORNER_PATCH, beside, case_of
 from fem.case.tables.problem import broken

@@ -11,7 +11,6 @@ from fem.case.tables.container_tables import MASSES
 from fem.case.tables.duration import duration_in_words, longest_time
 from fem.case.tables.floors import FLOOR_CASE_RULES
 from fem.case.tables.links import LINK_RULES
-from fem.case.tables.motion_rules import harmonic_angular_frequency
 from fem.case.tables.neighbours import NEIGHBOUR_RULES
 from fem.case.tables.problem import Rule, left_out, refused
 
@@ -57,10 +56,9 @@ def _coarse(case: Any) -> str:
 def _tapers_beyond_the_run(case: Any, table: str) -> str:
     """Why the tapers of a harmonic motion that ends with the run are longer than that."""
     motion = getattr(case, table)
-    frequency = harmonic_angular_frequency(motion)
-    if frequency is None or motion.cycles is not None:
+    if motion.omega is None or motion.cycles is not None:
         return ""
-    tapered = 2.0 * motion.ramp_cycles * 2.0 * math.pi / frequency
+    tapered = 2.0 * motion.ramp_cycles * 2.0 * math.pi / motion.omega
     if tapered <= longest_time(case):
         return ""
     return (

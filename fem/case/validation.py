@@ -15,8 +15,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticUndefined
 
 from fem.case.case_rules import CASE_RULES
-from fem.case.content import CaseContent
-from fem.case.tables.all_tables import OPTIONAL, TABLES, CaseHeading
+from fem.case.tables.all_tables import OPTIONAL, TABLES, CaseContent, CaseHeading
 from fem.case.tables.container_tables import BoxTable
 from fem.case.tables.input_ranges import short
 from fem.case.tables.links import MOST_ROWS, ROWS

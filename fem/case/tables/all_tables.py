@@ -1,14 +1,19 @@
-"""Every table of a case file by its name, and the keys before the first."""
+"""What a case file holds: every table by its name, the keys before the first, and what follows from several of them."""
 
-from typing import Annotated
+import math
+from functools import cached_property
+from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
+from fem.case.tables.boxes import Box, boxes_of, joint_friction
 from fem.case.tables.contact_tables import ContactTable, JointsTable
 from fem.case.tables.container_tables import ContainerTable, SupportTable
 from fem.case.tables.floors import FloorTable
+from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.motion_tables import MotionTable, VerticalTable
+from fem.case.tables.neighbours import NeighbourTable
 from fem.case.tables.run_tables import (
     DocumentTable,
     InitialTable,
@@ -54,3 +59,143 @@ class CaseHeading(CaseTable):
     gravity_m_s2: Annotated[float, q.GRAVITY] = case_key(
         "g; the paper (Knoedel and Hrabowski) takes 10", 9.81
     )
+
+
+class CaseContent(CaseHeading):
+    """The tables of a case, and what follows from several of their keys."""
+
+    container: ContainerTable
+    support: SupportTable = Field(default_factory=SupportTable)
+    contact: ContactTable
+    floor: FloorTable = Field(default_factory=FloorTable)
+    joints: JointsTable = Field(default_factory=JointsTable)
+    motion: MotionTable
+    vertical: VerticalTable = Field(default_factory=VerticalTable)
+    initial: InitialTable = Field(default_factory=InitialTable)
+    static: StaticTable | None = None  #: None: no rows of the code
+    wind: WindTable | None = None  #: None: no rows of the wind
+    solver: SolverTable = Field(default_factory=SolverTable)
+    output: OutputTable = Field(default_factory=OutputTable)
+    uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
+    limits: RunLimitsTable | None = None  #: None: the width, or the gap beside it
+    document: DocumentTable | None = None  #: None: the pages bear no names
+    stop: tuple[StopTable, ...] = ()
+    tie: tuple[TieTable, ...] = ()
+    neighbour: tuple[NeighbourTable, ...] = ()
+
+    @property
+    def named(self) -> dict[str, str | None]:
+        """What stands on its pages, by key of [document]."""
+        return {} if self.document is None else self.document.model_dump()
+
+    @cached_property
+    def stack(self) -> tuple[Box, ...]:
+        """All boxes, from the floor up."""
+        return boxes_of(self.container, self.gravity_m_s2)
+
+    @property
+    def links(self) -> tuple[StopTable | TieTable, ...]:
+        """Stops and ties, the stops first."""
+        return (*self.stop, *self.tie)
+
+    @property
+    def bodies(self) -> int:
+        """How many bodies move each for itself."""
+        return self.container.bodies + len(self.neighbour)
+
+    @property
+    def effective_width(self) -> float:
+        """Width between the points about which it rocks, over that of the base: castings may stand inside its sides."""
+        return self.support.effective_width * (1.0 - 2.0 * self.support.inset / self.stack[0].width)
+
+    @property
+    def foot(self) -> float | None:
+        """Length along x of the feet at the ends of the base [m]."""
+        return self.support.foot_m if self.support.kind == "feet" else None
+
+    @property
+    def casting_length(self) -> float | None:
+        """Length along x with which a casting presses the floor [m]; None of a base without castings.
+
+        Where a post stands on it, the length of the post: beyond it the plate bends. EN 1993-1-8, 6.2.5 adds one to
+        two plate thicknesses, but the thickness is not an input.
+        """
+        support, post = self.support, self.container.post_section
+        if support.kind != "corners" or support.casting_m is None:
+            return None
+        return support.casting_m[0] if post is None else min(support.casting_m[0], post[0])
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the base is cambered from edge to edge: it touches wherever it has rolled to."""
+        return self.support.camber_m > 0.0 and self.foot is None
+
+    @property
+    def joint_friction(self) -> dict[str, float]:
+        """mu_static, mu_kinetic and weakening_m between loose boxes."""
+        return joint_friction(self.joints, self.contact)
+
+    @property
+    def box_mass(self) -> float:
+        """Mass of one box with its fill, the mean where boxes differ [kg]."""
+        return self.stack[0].mass if self.container.box is None else self.mass / self.container.boxes
+
+    @property
+    def mass(self) -> float:
+        """Mass of all boxes with their fill [kg]."""
+        if self.container.box is not None:
+            return sum(box.mass for box in self.stack)
+        return self.container.boxes * self.box_mass
+
+    @property
+    def weight(self) -> float:
+        """Weight of all boxes with their fill [N]."""
+        return self.mass * self.gravity_m_s2
+
+    @property
+    def gravity_toward_floor(self) -> float:
+        """g cos(slope) [m/s2]."""
+        return self.gravity_m_s2 * math.cos(self.floor.slope)
+
+    @property
+    def gravity_downhill(self) -> float:
+        """g sin(slope), > 0 toward +x [m/s2]."""
+        return self.gravity_m_s2 * math.sin(self.floor.slope)
+
+    @property
+    def kinds(self) -> dict[str, object]:
+        """The kinds of its motions, by table."""
+        return {"motion": self.motion.kind, "vertical": self.vertical.kind}
+
+    @property
+    def has_vertical(self) -> bool:
+        """Whether the floor moves up and down."""
+        return self.vertical.kind != "none"
+
+    @property
+    def has_normal(self) -> bool:
+        """Whether the floor moves normal to itself: up and down, or on a slope with a horizontal motion."""
+        return self.has_vertical or (self.floor.turn != 0.0 and self.motion.kind != "none")
+
+    @property
+    def contact_damping_ratio(self) -> float | None:
+        """c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; None: the slab's own damping."""
+        own = self.floor.is_slab and "damping_ratio" not in self.contact.model_fields_set
+        return None if own else self.contact.damping_ratio
+
+    @property
+    def states_restitution(self) -> bool:
+        """Whether a factor is stated on what its impacts leave."""
+        return self.contact.restitution_over_housner is not None
+
+    @property
+    def starts_moving(self) -> bool:
+        """Whether the container has the velocity of the floor at t = 0, along x and vertically."""
+        return self.motion.kind == "none" or self.motion.start == "moving"
+
+    def given(self) -> dict[str, Any]:
+        """The keys that were set, by table, as a case file would hold them."""
+        keys = self.model_dump(by_alias=True, exclude_unset=True, exclude=set(TABLES))
+        tables = {name: getattr(self, name) for name in TABLES}
+        content = {name: table.model_dump(exclude_unset=True) for name, table in tables.items() if table}
+        return keys | {name: given for name, given in content.items() if given or name in OPTIONAL}

@@ -6,9 +6,8 @@ preset gives what the case leaves out; no preset is fitted to an experiment.
 """
 
 import math
-from dataclasses import dataclass
 from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -17,68 +16,31 @@ from fem.case.tables.problem import Rule, left_out, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 
-@dataclass(frozen=True, kw_only=True)
-class FloorPreset:
+class FloorPreset(NamedTuple):
     """A common floor: the values taken; `../keys.md` has the range in which such floors lie."""
 
     youngs_modulus: float  #: for loads of some milliseconds [Pa]
     poisson_ratio: float
     bearing_strength: float  #: mean pressure on a small patch at which it gives way [Pa]
     density: float | None  #: for radiation damping [kg/m3]; None where no half-space lies below
-    source: str
 
 
 PRESETS: dict[str, FloorPreset] = {
-    "concrete C25/30": FloorPreset(
-        youngs_modulus=31e9,
-        poisson_ratio=0.2,
-        bearing_strength=50e6,
-        density=2400.0,
-        source=(
-            "EN 1992-1-1:2004, Table 3.1 (E_cm, f_ck = 25 MPa, f_cm = 33 MPa) and 3.1.3 (aggregates: 0.7 to 1.2 E_cm); "
-            "strength from f_ck without spread to 3 f_cm with it (6.7, Eq. 6.63), 1.5 f_cm taken"
-        ),
-    ),
-    "asphalt": FloorPreset(
-        youngs_modulus=3e9,
-        poisson_ratio=0.35,
-        bearing_strength=5e6,
-        density=2400.0,
-        source=(
-            "typical values for pavement materials: 2.1 to 3.4 GPa at 21 C, 14 GPa and more at 0 C, 0.14 to 0.34 GPa "
-            "at 60 C, Poisson's ratio 0.30 to 0.35; strength: estimate, unconfined to three times that"
-        ),
-    ),
-    "compacted gravel": FloorPreset(
-        youngs_modulus=280e6,
-        poisson_ratio=0.35,
-        bearing_strength=0.5e6,
-        density=2100.0,
-        source=(
-            "typical values for pavement materials, base of crushed stone: 140 to 550 MPa, Poisson's ratio 0.35; "
-            "strength by EN 1997-1:2004, D.4, of a patch 0.2 m wide with 42 to 50 degrees of friction (more if wider)"
-        ),
-    ),
-    "steel plate": FloorPreset(
-        youngs_modulus=210e9,
-        poisson_ratio=0.3,
-        bearing_strength=600e6,
-        density=7850.0,
-        source=(
-            "EN 1993-1-1:2005, 3.2.6 and Table 3.1 (S235); strength from yield to 2.97 times yield, a punch on a plate "
-            "thick against the patch (Johnson, Contact Mechanics, 1985, 6.2); a thin one is as strong as what is below"
-        ),
-    ),
-    "rubber mat": FloorPreset(
-        youngs_modulus=3.6e6,
-        poisson_ratio=0.49,
-        bearing_strength=10e6,
-        density=None,
-        source=(
-            "Gent, Rubber Chem. Technol. 31 (1958) 896: hardness 60 Shore A (45 to 75), thick against the patch (a "
-            "thinner mat is stiffer); strength: estimate, the tensile strength, since rubber recovers below it"
-        ),
-    ),
+    # EN 1992-1-1:2004, Table 3.1 (E_cm, f_ck = 25 MPa, f_cm = 33 MPa) and 3.1.3 (aggregates: 0.7 to 1.2 E_cm);
+    # strength from f_ck without spread to 3 f_cm with it (6.7, Eq. 6.63), 1.5 f_cm taken
+    "concrete C25/30": FloorPreset(31e9, 0.2, 50e6, 2400.0),
+    # typical values for pavement materials: 2.1 to 3.4 GPa at 21 C, 14 GPa and more at 0 C, 0.14 to 0.34 GPa at 60 C,
+    # Poisson's ratio 0.30 to 0.35; strength: estimate, unconfined to three times that
+    "asphalt": FloorPreset(3e9, 0.35, 5e6, 2400.0),
+    # typical values for pavement materials, base of crushed stone: 140 to 550 MPa, Poisson's ratio 0.35; strength by
+    # EN 1997-1:2004, D.4, of a patch 0.2 m wide with 42 to 50 degrees of friction (more if wider)
+    "compacted gravel": FloorPreset(280e6, 0.35, 0.5e6, 2100.0),
+    # EN 1993-1-1:2005, 3.2.6 and Table 3.1 (S235); strength from yield to 2.97 times yield, a punch on a plate thick
+    # against the patch (Johnson, Contact Mechanics, 1985, 6.2); a thin one is as strong as what is below
+    "steel plate": FloorPreset(210e9, 0.3, 600e6, 7850.0),
+    # Gent, Rubber Chem. Technol. 31 (1958) 896: hardness 60 Shore A (45 to 75), thick against the patch (a thinner mat
+    # is stiffer); strength: estimate, the tensile strength, since rubber recovers below it
+    "rubber mat": FloorPreset(3.6e6, 0.49, 10e6, None),
 }
 
 #: short names of presets

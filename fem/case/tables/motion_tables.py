@@ -1,20 +1,181 @@
-"""The tables [motion] and [vertical]: how the floor moves along x and along z, by the same keys.
+"""The tables [motion] and [vertical]: how the floor moves along x and along z, by the same keys, and their rules.
 
-Keys that both tables have stand in the shared bases; the order of the bases is the order of the keys in a resolved
-case, on which its hash depends.
+x = A sin(Omega t + phase); any two of amplitude, peak acceleration A Omega^2 and frequency determine the third. Keys
+that both tables have stand in the shared bases; the order of the bases is the order of the keys in a resolved case, on
+which its hash depends.
 """
 
 import math
-from typing import Annotated, Literal, assert_never
+from dataclasses import replace
+from functools import partial
+from typing import Annotated, Any, Literal, assert_never
 
 from fem.case.tables import quantities as q
-from fem.case.tables.motion_rules import (
-    MOTION_RULES,
-    VERTICAL_RULES,
-    harmonic_amplitude,
-    harmonic_angular_frequency,
-)
+from fem.case.tables.problem import Rule, file_beside, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
+
+#: peak acceleration of a harmonic floor given by amplitude and frequency [m/s2]: a hundred times gravity, which a
+#: vibration test at 100 Hz may reach; ten times that is a slip, and steps of nanoseconds
+MOST_PEAK = 1e3
+LEAST_RAMP = 0.01  #: cycles over which a taper may bring the floor to its velocity
+
+
+def _not_two_of_three(motion: Any) -> str:
+    sizes, frequencies = (
+        [key for key in keys if getattr(motion, key) is not None]
+        for keys in (("amplitude_m", "peak_acceleration_m_s2"), ("angular_frequency_rad_s", "frequency_Hz"))
+    )
+    given = sizes + frequencies
+    if motion.kind != "harmonic" or (len(frequencies) <= 1 and len(given) == 2):
+        return ""
+    return (
+        ", peak_acceleration_m_s2, frequency (angular_frequency_rad_s or frequency_Hz): exactly "
+        f"two of the three must be given, got {', '.join(given) or 'none'}; "
+        + ("leave one out" if len(given) > 1 else "add what is missing")
+    )
+
+
+def _frequency_refused(motion: Any) -> str:
+    given = motion.angular_frequency_rad_s is not None or motion.frequency_Hz is not None
+    if motion.kind != "harmonic" or given:
+        return ""
+    if motion.amplitude_m is None or motion.peak_acceleration_m_s2 is None:
+        return ""
+    frequency = motion.omega
+    if frequency is not None and q.ANGULAR_FREQUENCY.allows(frequency):
+        return ""
+    follows = "does not follow from" if frequency is None else f"would be {frequency:g} rad/s for"
+    return (
+        f"{follows} amplitude_m = {motion.amplitude_m:g} m and peak_acceleration_m_s2 = "
+        f"{motion.peak_acceleration_m_s2:g} m/s2; it must be {q.ANGULAR_FREQUENCY.range_in_words} rad/s"
+    )
+
+
+def _too_strong(motion: Any) -> str:
+    """Of a harmonic motion given by amplitude and frequency."""
+    if motion.omega is None or motion.amplitude_m is None or motion.peak_acceleration_m_s2 is not None:
+        return ""
+    peak = float(motion.amplitude_m * motion.omega**2)
+    if peak <= MOST_PEAK:
+        return ""
+    return (
+        f"= {motion.amplitude_m:g} m at {motion.omega:g} rad/s is a peak acceleration of {peak:.4g} m/s2; it must be "
+        f"at most {MOST_PEAK:g} m/s2; is the amplitude in m, and is the frequency in the unit of its key?"
+    )
+
+
+def _amplitude_refused(motion: Any) -> str:
+    amplitude = motion.full_amplitude
+    if (
+        motion.amplitude_m is not None
+        or amplitude is None
+        or amplitude < 0.0
+        or q.AMPLITUDE.allows(amplitude)
+    ):
+        return ""
+    return (
+        f"= {motion.peak_acceleration_m_s2:g} m/s2 at {motion.omega:g} rad/s is an amplitude of {amplitude:g} m; it "
+        f"must be {q.AMPLITUDE.range_in_words} m"
+    )
+
+
+def _incomplete(motion: Any, kind: str, keys: tuple[str, ...]) -> str:
+    """What a motion of a kind needs and does not have; empty where it has all."""
+    missing = [key for key in keys if getattr(motion, key) is None] if motion.kind == kind else []
+    are = "is" if len(missing) == 1 else "are"
+    needs = f'{" and ".join(missing)} {are} missing: kind = "{kind}" needs {", ".join(keys)}'
+    return needs if missing else ""
+
+
+#: quantity of a table -> its units
+UNITS = {"acceleration": ("g", "m/s2", "cm/s2", "gal", "mm/s2"), "displacement": ("m",)}
+
+SHARED_RULES = (
+    refused("motion.amplitude_m", _not_two_of_three),
+    refused("motion.angular_frequency_rad_s", _frequency_refused),
+    Rule(
+        "motion.peak_acceleration_m_s2",
+        lambda motion: motion.kind != "harmonic" or (motion.peak_acceleration_m_s2 or 0.0) >= 0.0,
+        "must be at least 0 for a harmonic motion, got {peak_acceleration_m_s2:g} m/s2; "
+        "phase_rad = 3.14159 reverses its sign",
+    ),
+    refused("motion.peak_acceleration_m_s2", _amplitude_refused),
+    refused("motion.amplitude_m", _too_strong),
+    Rule(
+        "motion.ramp_cycles",
+        lambda motion: (
+            motion.kind != "harmonic" or motion.cycles is None or 2.0 * motion.ramp_cycles <= motion.cycles
+        ),
+        "must be at most half of cycles = {cycles:g}, got {ramp_cycles:g}; it tapers the beginning and the end",
+    ),
+    Rule(
+        "motion.ramp_cycles",
+        lambda motion: (
+            motion.kind != "harmonic" or motion.ramp_cycles == 0.0 or motion.ramp_cycles >= LEAST_RAMP
+        ),
+        f"must be 0 or at least {LEAST_RAMP:g}, got {{ramp_cycles:g}}: so short a taper is an impact; "
+        "without one the floor moves from the beginning on (see start)",
+    ),
+    refused(
+        "motion.", partial(_incomplete, kind="pulse", keys=("shape", "peak_acceleration_m_s2", "pulse_s"))
+    ),
+    Rule(
+        "motion.unit",
+        lambda motion: motion.kind != "table" or motion.unit in (None, *UNITS[motion.quantity]),
+        lambda motion: (
+            f'must be {" or ".join(UNITS[motion.quantity])} for quantity = "{motion.quantity}", '
+            f'got "{motion.unit}"; for values in another unit give the factor as scale'
+        ),
+    ),
+    Rule(
+        "motion.baseline",
+        lambda motion: (
+            motion.kind != "table" or motion.quantity != "displacement" or motion.baseline == "none"
+        ),
+        'must be "none" for quantity = "displacement", got "{baseline}"; it corrects accelerations',
+    ),
+    Rule(
+        "motion.scale",
+        lambda motion: motion.kind != "table" or motion.scale != 0.0,
+        'must not be 0; for a floor at rest take kind = "none"',
+    ),
+    file_beside("motion.file", below=False),
+    Rule(
+        "motion.scale_to_m_s2",
+        lambda motion: motion.kind != "table" or motion.scale_to_m_s2 is None or motion.scale == 1.0,
+        "and scale are alternatives; leave one out",
+    ),
+    Rule(
+        "motion.scale_to_m_s2",
+        lambda motion: motion.scale_to_m_s2 != 0.0,
+        'must not be 0; for a floor at rest take kind = "none"',
+    ),
+    Rule(
+        "motion.end_s",
+        lambda motion: motion.start_s is None or motion.end_s is None or motion.start_s < motion.end_s,
+        "must be later than start_s = {start_s:g} s, got {end_s:g} s",
+    ),
+)
+
+MOTION_RULES = (*SHARED_RULES, refused("motion.", partial(_incomplete, kind="table", keys=("file",))))
+
+#: the same rules for the keys of the same names, and what concerns a scale of every kind
+VERTICAL_RULES = (
+    *(replace(rule, place=rule.place.replace("motion.", "vertical.", 1)) for rule in SHARED_RULES),
+    Rule(
+        "vertical.scale",
+        lambda vertical: vertical.kind not in ("harmonic", "pulse") or vertical.scale != 0.0,
+        'must not be 0; for a floor that does not move up and down take kind = "none"',
+    ),
+    Rule(
+        "vertical.scale",
+        lambda vertical: vertical.kind not in ("harmonic", "pulse") or vertical.nominal_peak <= MOST_PEAK,
+        lambda vertical: (
+            f"= {vertical.scale:g} makes a peak acceleration of {vertical.nominal_peak:.4g} m/s2; it must be at most "
+            f"{MOST_PEAK:g} m/s2"
+        ),
+    ),
+)
 
 
 class HarmonicKeys(CaseTable):
@@ -48,6 +209,29 @@ class HarmonicKeys(CaseTable):
         10.0,
         only=("kind", "harmonic"),
     )
+
+    @property
+    def omega(self) -> float | None:
+        """Omega of a harmonic motion from the keys given [rad/s]; None where they do not determine it."""
+        if self.kind != "harmonic":
+            return None
+        if self.angular_frequency_rad_s is not None:
+            return float(self.angular_frequency_rad_s)
+        if self.frequency_Hz is not None:
+            return 2.0 * math.pi * float(self.frequency_Hz)
+        if not self.amplitude_m or self.peak_acceleration_m_s2 is None:
+            return None
+        ratio = self.peak_acceleration_m_s2 / self.amplitude_m
+        return math.sqrt(ratio) if ratio > 0.0 else None
+
+    @property
+    def full_amplitude(self) -> float | None:
+        """A of x = A sin(Omega t + phase) from the keys given [m]; None where they do not determine it."""
+        if self.kind != "harmonic" or self.amplitude_m is not None:
+            return self.amplitude_m if self.kind == "harmonic" else None
+        if self.omega is None or self.peak_acceleration_m_s2 is None:
+            return None
+        return self.peak_acceleration_m_s2 / self.omega**2
 
 
 class StartKey(HarmonicKeys):
@@ -142,12 +326,12 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
     @property
     def angular_frequency(self) -> float:
         """Omega of a harmonic motion [rad/s]; 0 for every other kind."""
-        return harmonic_angular_frequency(self) or 0.0
+        return self.omega or 0.0
 
     @property
     def amplitude(self) -> float:
         """A of a harmonic motion x = A sin(Omega t + phase) [m], with its factor; 0 for every other kind."""
-        return abs(self.factor) * (harmonic_amplitude(self) or 0.0)
+        return abs(self.factor) * (self.full_amplitude or 0.0)
 
     @property
     def period(self) -> float:

@@ -31,7 +31,7 @@ from fem.case.tables.input_ranges import (
     own_value,
     short,
 )
-from fem.case.tables.motion_rules import LEAST_RAMP
+from fem.case.tables.motion_tables import LEAST_RAMP
 from fem.case.tables.problem import refused
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
