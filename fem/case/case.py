@@ -74,11 +74,7 @@ class Case(CaseContent):
 
     @property
     def row(self) -> tuple["Case", ...]:
-        """The case of each container of its row alone, its own first; empty without neighbours.
-
-        Raises:
-            CaseError: a neighbour that cannot be.
-        """
+        """The case of each container of its row alone, its own first, if any; CaseError: a neighbour cannot be."""
         row = []
         for number, neighbour in enumerate((None, *self.neighbour) if self.neighbour else ()):
             try:
@@ -97,11 +93,7 @@ class Case(CaseContent):
 
     @property
     def _beside_alone(self) -> dict[str, "Case"]:
-        """What its neighbours name, each alone on this floor, by its name in a folder of results.
-
-        Raises:
-            CaseError: two have one name there.
-        """
+        """What its neighbours name, each alone on this floor, by its name in results; CaseError: two have one name."""
         copies: dict[str, Case] = {}
         names = {neighbour.case for neighbour in self.neighbour} - {None}
         for name in sorted(map(str, names)):
@@ -120,11 +112,7 @@ class Case(CaseContent):
 
     @property
     def files(self) -> dict[str, data_files.DataFile]:
-        """Mesh and motion files, as far as the case has them, by dotted key.
-
-        Raises:
-            CaseError: a file is missing, or outside the folder of the case file and not named on the command line.
-        """
+        """Its mesh and motion files, by dotted key; CaseError: one is missing, or outside and not trusted."""
         named = {"container.mesh_file": self.container.mesh_file}
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             if self.recorded is None and motion.kind == "table":
@@ -325,9 +313,7 @@ def case_hash(case: Case) -> str:
     """SHA-256 of the resolved case without its title and [document], and of the files that it reads.
 
     Comments, written-out defaults, keys of options that are not chosen and `output.figures` do not change it.
-
-    Raises:
-        CaseError: if a mesh or motion file cannot be read.
+    CaseError: if a mesh or motion file cannot be read.
     """
     document = {key: value for key, value in case.resolved().items() if key not in LABELS}
     document["output"] = {key: value for key, value in document["output"].items() if key != "figures"}
@@ -376,11 +362,7 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
 
 
 def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[str, Any]) -> Case:
-    """The case that a neighbour of a case names.
-
-    Raises:
-        CaseError: there is none, it cannot be used, has links of its own, or stands on another floor.
-    """
+    """The case that a neighbour of a case names; CaseError: not to be used, with links, on another floor."""
     place = f"{origin.place}: [neighbour] "
     try:
         anywhere = origin.allow_outside or "neighbour.case" in origin.trusted

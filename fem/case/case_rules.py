@@ -147,17 +147,20 @@ CASE_RULES = (
     *NEIGHBOUR_RULES,
     *(refused(f"container.{key}", partial(_implausible, key=key)) for key in ("weight_N", "mass_kg")),
     *left_out(
-        "contact.restitution_over_housner",
         lambda case: case.support.camber_m > 0.0,
-        "does not apply to support.camber_m > 0: a cambered base rolls, and its feet do not strike at their corners; "
-        "leave it out",
+        {
+            "contact.restitution_over_housner": "does not apply to support.camber_m > 0: a cambered base rolls, and "
+            "its feet do not strike at their corners; leave it out"
+        },
     ),
     refused("support.casting_m", _casting_does_not_fit),
     refused("container.post_m", _posts_do_not_fit),
     *left_out(
-        "container.corner_post_N",
         lambda case: case.support.kind != "corners",
-        'belongs to support.kind = "corners", where a post stands above each; leave it out, or take "corners"',
+        {
+            "container.corner_post_N": 'belongs to support.kind = "corners", where a post stands above each; leave it '
+            'out, or take "corners"'
+        },
     ),
     Rule(
         "support.foot_m",

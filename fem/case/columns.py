@@ -123,15 +123,13 @@ GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, NEIGH
 
 def history_width(case: Any) -> int:
     """How many columns the history of a case has, which may be read in part."""
-    return sum(len(group.columns) * len(group.numbers(case)) for group in GROUPS)
+    return len(history_columns(case))
 
 
 def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:
-    """The columns of the history of a case, in their order.
+    """The columns of the history of a case, or of what could be read of it, in their order.
 
-    Args:
-        case: or those of its tables that could be read.
-        joints: with forces; None: those between its boxes.
+    `joints`: with forces; None: those between its boxes.
     """
     return tuple(
         name

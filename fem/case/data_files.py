@@ -46,15 +46,12 @@ def _path(folder: Path, name: str) -> Path:
 def find_data_files(
     folder: Path, named: Mapping[str, str | None], *, trusted: frozenset[str]
 ) -> dict[str, DataFile]:
-    """The files of a case by their keys.
+    """The files of a case by their keys; CaseError: a file is missing, or outside that folder and not to be trusted.
 
     Args:
         folder: of the case file.
         named: names as the case has them; a None names no file.
         trusted: keys whose files may lie outside that folder.
-
-    Raises:
-        CaseError: a file is missing, or outside that folder and not to be trusted.
     """
     files: dict[str, DataFile] = {}
     for key, name in named.items():

@@ -82,11 +82,7 @@ class Collection:
         return tuple(sorted(entry.name[:-5] for entry in entries if entry.name.endswith(".toml")))
 
     def text(self, name: str) -> str:
-        """The file of this name.
-
-        Raises:
-            CaseError: if there is none; with the nearest one.
-        """
+        """The file of this name; CaseError: there is none, with the nearest one."""
         if name not in self.names:
             raise CaseError(f"no shipped {self.kind} {name!r}{self.hint(name)}")
         return (self._folder / f"{name}.toml").read_text(encoding="utf-8")
@@ -98,10 +94,8 @@ class Collection:
     def find(self, name_or_path: str | Path) -> Origin:
         """The text of a file, or of a shipped one of that name; a file wins.
 
-        The mesh and motion files of a shipped case are looked for in the current folder.
-
-        Raises:
-            CaseError: if there is neither, or if the file cannot be read.
+        The mesh and motion files of a shipped case are looked for in the current folder. CaseError: if there is
+        neither, or if the file cannot be read.
         """
         name = str(name_or_path)
         is_folder = os.path.isdir(name)
@@ -126,13 +120,12 @@ class Collection:
     def beside(self, name: str, origin: Origin, *, anywhere: bool = False) -> Origin:
         """One that another file names: a file beside that one wins over a shipped one of that name.
 
+        CaseError: there is neither, it is outside, or it cannot be read; beginning with the kind.
+
         Args:
             name: as given there.
             origin: of the other file.
             anywhere: it may lie outside that folder.
-
-        Raises:
-            CaseError: there is neither, it is outside, or it cannot be read; beginning with the kind.
         """
         path = origin.folder / name
         is_file = os.path.isfile(path)
@@ -169,8 +162,7 @@ COLLECTIONS = (CASES, SWEEPS, ENSEMBLES, SITES)
 def parse_case(origin: Origin) -> dict[str, Any]:
     """The tables of a file as TOML reads them.
 
-    Raises:
-        CaseError: if it is no TOML, with the line and a way out, or a file of another kind.
+    CaseError: if it is no TOML, with the line and a way out, or a file of another kind.
     """
     try:
         data = tomllib.loads(origin.text)

@@ -26,11 +26,7 @@ OF_A_RECORD = {
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Dotted key and value of one `--set`; what is no TOML value is plain text.
-
-    Raises:
-        CaseError: the key or the value is missing.
-    """
+    """Dotted key and value of one `--set`; what is no TOML value is plain text. CaseError: one of them is missing."""
     key, equals, value = text.partition("=")
     key, value = key.strip(), value.strip()
     if not equals or not value or not DOTTED_KEY.fullmatch(key):
@@ -45,11 +41,7 @@ def parse_override(text: str) -> tuple[str, Any]:
 
 
 def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """A copy of a case's data with dotted keys set, alternatives replaced.
-
-    Raises:
-        CaseError: a key names no table of a case file.
-    """
+    """A copy of a case's data with dotted keys set, alternatives replaced; CaseError: a key names no table."""
     changed = deepcopy(dict(data))
     tables = {f"{table}.kind": "table" for table in ("motion", "vertical") if f"{table}.file" in overrides}
     if "floor.preset" in overrides:
@@ -77,10 +69,23 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
                 f"--set {dotted}: unknown table [{table}]{'; ' + near if near else ''} (known: {known})"
             )
     _replace_alternatives(changed, overrides.keys())
-    if "floor.corner_patch_m" not in overrides:
-        _keep_patch_under_wall(changed, data)
+    box, floor, support = (_table(changed, name) for name in ("container", "floor", "support"))
+    if "floor.corner_patch_m" not in overrides and isinstance(patch := floor.get("corner_patch_m"), list):
+        # a patch that was as long as the wall is thick, or as wide as the container deep, stays so
+        sides = [
+            (each.get("wall_m"), each.get("depth_m", each.get("width_m")))
+            for each in (_table(data, "container"), box)
+        ]
+        floor["corner_patch_m"] = [
+            new if side is not None and side == was else side
+            for side, was, new in zip(patch, *sides, strict=False)
+        ]
     if "support.casting_m" not in overrides and not overrides.keys().isdisjoint(SIDES):
-        _keep_castings_under_base(changed)
+        # castings that a narrower or less deep base has no room for become as large as half of it
+        with suppress(KeyError, TypeError, ValueError):  # refused when the case is read
+            width, depth, inset = support["casting_m"]
+            half = 0.5 * (box.get("depth_m") or box["width_m"])
+            support["casting_m"] = [min(width, 0.5 * box["width_m"] - inset), min(depth, half), inset]
     return changed
 
 
@@ -93,9 +98,7 @@ def _table(data: Mapping[str, Any], name: str) -> dict[str, Any]:
 def keys_in_effect(values: Mapping[str, Any], kinds: Mapping[str, object]) -> Mapping[str, Any]:
     """The values by the keys that they set: the peak of a record is what it is scaled to; of two, the last holds.
 
-    Args:
-        values: by dotted key.
-        kinds: of the motions of the case, by table, before the values are set; see `kinds_of`.
+    `kinds`: of the motions of the case, by table, before the values are set; see `kinds_of`.
     """
     if values.keys().isdisjoint(OF_A_RECORD):
         return values
@@ -159,44 +162,22 @@ def _replace_alternatives(data: dict[str, Any], explicit: Collection[str]) -> No
             drop_others(table, *strengths)
 
 
-def _keep_patch_under_wall(data: Mapping[str, Any], former: Mapping[str, Any]) -> None:
-    """A patch that was as long as the wall is thick, or as wide as the container deep, stays so."""
-    floor, boxes = _table(data, "floor"), [_table(each, "container") for each in (former, data)]
-    if isinstance(patch := floor.get("corner_patch_m"), list):
-        sides = [(box.get("wall_m"), box.get("depth_m", box.get("width_m"))) for box in boxes]
-        floor["corner_patch_m"] = [
-            new if side is not None and side == was else side
-            for side, was, new in zip(patch, *sides, strict=False)
-        ]
-
-
-def _keep_castings_under_base(data: Mapping[str, Any]) -> None:
-    """Castings that a narrower or less deep base has no room for become as large as half of it."""
-    box, support = _table(data, "container"), _table(data, "support")
-    with suppress(KeyError, TypeError, ValueError):  # refused when the case is read
-        width, depth, inset = support["casting_m"]
-        half = 0.5 * (box.get("depth_m") or box["width_m"])
-        support["casting_m"] = [min(width, 0.5 * box["width_m"] - inset), min(depth, half), inset]
-
-
 def naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str]:
     """Reasons why a case cannot be used, with each override named on the line of its key, else on a line of its own."""
+    words = {}
+    for dotted, value in overrides.items():
+        text = str(value)[:80]
+        words[dotted] = f"--set {dotted}={text if text.isprintable() else repr(text)}"
     named = []
-    unnamed = dict(overrides)
+    unnamed = dict(words)
     for line in lines:
-        for dotted, value in overrides.items():
+        for dotted, given in words.items():
             table, _, key = dotted.rpartition(".")
-            if (
-                f"[{table}] {key} " if table else f" {key} "
-            ) in line or f"[{table}] unknown key {key!r}" in line:
-                line += f" ({_as_override(dotted, value)})"
+            place = f"[{table}] {key} " if table else f" {key} "
+            if place in line or f"[{table}] unknown key {key!r}" in line:
+                line += f" ({given})"
                 unnamed.pop(dotted, None)
         named.append(line)
     if unnamed and not any("(--set " in line for line in named):
-        named.append("with " + " ".join(_as_override(dotted, value) for dotted, value in unnamed.items()))
+        named.append("with " + " ".join(unnamed.values()))
     return named
-
-
-def _as_override(dotted: str, value: object) -> str:
-    text = str(value)[:80]
-    return f"--set {dotted}={text if text.isprintable() else repr(text)}"

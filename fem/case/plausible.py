@@ -23,7 +23,7 @@ MOST_PEAK, MOST_STATED_PEAK = 30.0, 60.0
 
 
 def doubts(name: str, component: Component, made: Component, *, scale: float, confirmed: bool) -> list[str]:
-    """What is unusual about a motion, in sentences.
+    """What is unusual about a motion, in sentences; RecordError: no floor moves so.
 
     Args:
         name: of the record.
@@ -31,51 +31,39 @@ def doubts(name: str, component: Component, made: Component, *, scale: float, co
         made: as the floor follows it.
         scale: the factor in it.
         confirmed: its peak is given.
-
-    Raises:
-        RecordError: no floor moves so.
     """
-    x, _, a = motion_of(made)
-    notes = _of_step(name, component)
+    x, _, followed = motion_of(made)
+    notes, step = [], component.step
+    if not STEPS[0] * (1.0 - 1e-6) <= step <= STEPS[1] * (1.0 + 1e-6):
+        unusual = f"its samples are {step:.4g} s apart, and those of records {STEPS[0]:g} to {STEPS[1]:g} s"
+        if not component.time_stated:
+            meant = [
+                f" (it would be {step * factor:.4g} s if its times are in {unit})"
+                for unit, factor in TIMES.items()
+                if STEPS[0] <= step * factor <= STEPS[1]
+            ]
+            raise RecordError(
+                f"{name}: {unusual}{''.join(meant[:1])}; the file does not state the unit of its times: write it into "
+                "a line above the numbers, such as 't [s]' or 't [ms]', or correct the times"
+            )
+        notes.append(unusual)
     if not confirmed:
-        notes += _of_peak(name, component, float(np.abs(a).max()), scale)
-    return notes + _of_way(name, component, float(np.abs(x - x[0]).max()))
-
-
-def _of_step(name: str, component: Component) -> list[str]:
-    step = component.step
-    if STEPS[0] * (1.0 - 1e-6) <= step <= STEPS[1] * (1.0 + 1e-6):
-        return []
-    unusual = f"its samples are {step:.4g} s apart, and those of records {STEPS[0]:g} to {STEPS[1]:g} s"
-    if component.time_stated:
-        return [unusual]
-    meant = [
-        f"{step * factor:.4g} s if its times are in {unit}"
-        for unit, factor in TIMES.items()
-        if STEPS[0] <= step * factor <= STEPS[1]
-    ]
-    raise RecordError(
-        f"{name}: {unusual}{f' (it would be {meant[0]})' if meant else ''}; the file does not state the unit of its "
-        "times: write it into a line above the numbers, such as 't [s]' or 't [ms]', or correct the times"
-    )
-
-
-def _of_way(name: str, component: Component, far: float) -> list[str]:
-    a = component.values
-    notes, limit = [], TOO_FAR
+        notes += _of_peak(name, component, float(np.abs(followed).max()), scale)
+    a, far, limit, sign = component.values, float(np.abs(x - x[0]).max()), TOO_FAR, ""
     if component.quantity == "acceleration" and a.size >= LEAST_SAMPLES:
         peak, mean = float(np.abs(a).max()), float(np.mean(a))
         if peak > 0.0 and (float(a.min()) >= 0.0 or float(a.max()) <= 0.0):
-            notes, limit = ["its accelerations have one sign"], TOO_FAR_ONE_WAY
+            sign, limit = "its accelerations have one sign", TOO_FAR_ONE_WAY
         elif abs(mean) > LOPSIDED * peak:
-            notes = [f"the mean of its accelerations is {abs(mean) / peak:.0%} of their peak"]
+            sign = f"the mean of its accelerations is {abs(mean) / peak:.0%} of their peak"
             limit = TOO_FAR_ONE_WAY
     if far > limit:
-        sign = f"{notes[0]}, and " if notes else ""
         raise RecordError(
-            f"{name}: {sign}the floor would move {far:.3g} m, and no floor does; is it a spectrum, is gravity or an "
-            'offset in it, are its times in another unit, or does it need baseline = "mean" or "linear"?'
+            f"{name}: {sign and f'{sign}, and '}the floor would move {far:.3g} m, and no floor does; is it a spectrum, "
+            "is gravity or an offset in it, are its times in another unit, or does it need baseline = "
+            '"mean" or "linear"?'
         )
+    notes += [sign] if sign else []
     if far > FAR:
         notes.append(
             f"it moves the floor by {far:.3g} m; is a baseline needed, or a unit or the times wrong?"
@@ -86,31 +74,27 @@ def _of_way(name: str, component: Component, far: float) -> list[str]:
 def _of_peak(name: str, component: Component, peak: float, scale: float) -> list[str]:
     unscaled = peak / abs(scale) if scale else 0.0
     limit = MOST_STATED_PEAK if component.unit_stated else MOST_PEAK
-    if min(peak, unscaled) > limit:
-        source = "the unit that the file states," if component.unit_stated else "unit ="
-        raise RecordError(
-            f"{name}: its accelerations reach {unscaled:.4g} m/s2 with {source} {component.unit!r}, and hardly any "
-            f"record reaches {limit:g} m/s2, {limit / 10.0:g} g{_other_units(component, unscaled)}; is the unit right? "
-            f"If they are meant, say so: scale_to_m_s2 = {peak:.4g}"
-        )
-    if USUAL_PEAKS[0] <= peak <= USUAL_PEAKS[1]:
-        return []
-    size = "hardly moves a container" if peak < USUAL_PEAKS[0] else "is beyond almost all records"
-    doubt = "" if component.unit_stated else _other_units(component, unscaled)
-    return [
-        f"its peak, {peak:.3g} m/s2 = {peak / STANDARD_GRAVITY:.2g} g, {size}"
-        + (f"{doubt}; is the unit right?" if doubt else "")
-    ]
-
-
-def _other_units(component: Component, peak: float) -> str:
-    """The peak if the values were of another unit that makes it a usual one."""
-    number = peak / abs(component.factor)
-    fitting = [
+    number = unscaled / abs(component.factor)
+    usual = [  # the peak if the values were of another unit that makes it a usual one
         f"{number * UNITS[unit].factor:.3g} m/s2 if the values were {unit}"
         for unit in ("g", "m/s2", "gal", "mm/s2")
         if component.quantity == "acceleration"
         and UNITS[unit].factor != abs(component.factor)
         and USUAL_PEAKS[0] <= number * UNITS[unit].factor <= USUAL_PEAKS[1]
     ]
-    return f" (it would be {' or '.join(fitting)})" if fitting else ""
+    other_units = f" (it would be {' or '.join(usual)})" if usual else ""
+    if min(peak, unscaled) > limit:
+        source = "the unit that the file states," if component.unit_stated else "unit ="
+        raise RecordError(
+            f"{name}: its accelerations reach {unscaled:.4g} m/s2 with {source} {component.unit!r}, and hardly any "
+            f"record reaches {limit:g} m/s2, {limit / 10.0:g} g{other_units}; is the unit right? "
+            f"If they are meant, say so: scale_to_m_s2 = {peak:.4g}"
+        )
+    if USUAL_PEAKS[0] <= peak <= USUAL_PEAKS[1]:
+        return []
+    size = "hardly moves a container" if peak < USUAL_PEAKS[0] else "is beyond almost all records"
+    doubt = "" if component.unit_stated else other_units
+    return [
+        f"its peak, {peak:.3g} m/s2 = {peak / STANDARD_GRAVITY:.2g} g, {size}"
+        + (f"{doubt}; is the unit right?" if doubt else "")
+    ]

@@ -30,11 +30,7 @@ class RecordedMotion:
 
 
 def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
-    """The motion of a table of the case whose kind is "table".
-
-    Raises:
-        CaseError: its file is missing, or no motion, or its components do not belong together, or the keys do not fit.
-    """
+    """The motion of a table of the case whose kind is "table"; CaseError: no motion, or not as its keys say."""
     try:
         return _recorded(case, table)
     except RecordError as error:

@@ -12,11 +12,7 @@ from fem.case.tables.links import ROWS
 
 
 def toml_value(value: object) -> str:
-    """A scalar, or a list of scalars, as TOML 1.0; a float keeps all its digits.
-
-    Raises:
-        TypeError: for anything but a bool, an int, a finite or infinite float, a string, or a list of these.
-    """
+    """A scalar, or a list of scalars, as TOML 1.0; a float keeps all its digits. TypeError: anything else."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):

@@ -129,7 +129,17 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
     loose boxes does not follow the floor's. A base that touches otherwise has another patch on a slab, and on a rigid
     floor another penalty, which is chosen for it. Where stops, ties or neighbours differ, all change in proportion.
     """
-    changed: dict[str, Any] = _in_proportion(case, values)
+    changed: dict[str, Any] = {}
+    for key, value in values.items():
+        table, _, name = key.partition(".")
+        rows = getattr(case, table) if table in ROWS else ()
+        different = [getattr(row, name) for row in rows]
+        if len({*different}) <= 1:
+            changed[key] = value
+            continue
+        given = changed.get(table) or [row.model_dump(by_alias=True, exclude_unset=True) for row in rows]
+        scaled = (short(number * float(value) / max(different)) for number in different)
+        changed[table] = [row | {name: number} for row, number in zip(given, scaled, strict=True)]
     own = {f"contact.{key}": getattr(case.contact, key) for key in ("mu_static", "mu_kinetic")}
     if case.container.is_loose:
         joints = {f"joints.{key}": value for key, value in case.joint_friction.items()}
@@ -145,22 +155,6 @@ def as_changed(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
         changed["floor.corner_patch_m"] = other_patch(case, str(values[keys.SUPPORT]))
     elif not values.keys().isdisjoint((keys.SUPPORT, keys.CAMBER)) and not case.floor.is_slab:
         changed.setdefault(keys.PENALTY, "auto")
-    return changed
-
-
-def _in_proportion(case: Case, values: Mapping[str, Value]) -> dict[str, Any]:
-    """The values, but where one stands for the largest of several different rows, these rows in its place."""
-    changed: dict[str, Any] = {}
-    for key, value in values.items():
-        table, _, name = key.partition(".")
-        rows = getattr(case, table) if table in ROWS else ()
-        own = [getattr(row, name) for row in rows]
-        if len({*own}) <= 1:
-            changed[key] = value
-            continue
-        given = changed.get(table) or [row.model_dump(by_alias=True, exclude_unset=True) for row in rows]
-        scaled = (short(number * float(value) / max(own)) for number in own)
-        changed[table] = [row | {name: number} for row, number in zip(given, scaled, strict=True)]
     return changed
 
 

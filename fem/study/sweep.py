@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 from fem.case.case import case_hash
-from fem.case.tables.uncertainty_table import UncertaintyTable
+from fem.case.tables.unknown_inputs import UncertaintyTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.results.disk import table_bytes

@@ -8,8 +8,7 @@ from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
 from fem.case.tables.boxes import Box, boxes_of, joint_friction
-from fem.case.tables.contact_tables import ContactTable, JointsTable
-from fem.case.tables.container_tables import ContainerTable, SupportTable
+from fem.case.tables.container_tables import ContactTable, ContainerTable, JointsTable, SupportTable
 from fem.case.tables.floors import FloorTable
 from fem.case.tables.links import StopTable, TieTable
 from fem.case.tables.motion_tables import MotionTable, VerticalTable
@@ -24,7 +23,7 @@ from fem.case.tables.run_tables import (
     WindTable,
 )
 from fem.case.tables.table import CaseTable, OneLine, case_key
-from fem.case.tables.uncertainty_table import UncertaintyTable
+from fem.case.tables.unknown_inputs import UncertaintyTable
 
 TABLES: dict[str, type[CaseTable]] = {
     "container": ContainerTable,

@@ -6,6 +6,7 @@ Each box of [[container.box]] takes what it leaves out from [container]; without
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from contact.stepping.modes import SLIDING
@@ -250,32 +251,20 @@ BOX_RULES = (
 )
 
 
-def _is_loose(case: Any) -> bool:
-    return bool(case.container.is_loose)
-
-
+IS_LOOSE = attrgetter("container.is_loose")
 JOINT_RULES = (
     *left_out(
-        "support.kind",
-        _is_loose,
-        'must be "corners" with container.joints = "loose": every box touches with its corners, on faces and on the '
-        "floor; leave it out",
-    ),
-    *left_out(
-        "support.camber_m",
-        _is_loose,
-        'does not apply to container.joints = "loose": every box touches with its corners; leave it out, or take '
-        '"bolted"',
-    ),
-    *left_out(
-        "initial.rotation_rad initial.angular_velocity_rad_s",
-        _is_loose,
-        'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',
-    ),
-    *left_out(
-        "output.stop_when_overturned",
-        _is_loose,
-        'must be true with container.joints = "loose": what a fallen box strikes is not modelled; leave it out',
+        IS_LOOSE,
+        {
+            "support.kind": 'must be "corners" with container.joints = "loose": every box touches with its corners, '
+            "on faces and on the floor; leave it out",
+            "support.camber_m": 'does not apply to container.joints = "loose": every box touches with its corners; '
+            'leave it out, or take "bolted"',
+            "initial.rotation_rad initial.angular_velocity_rad_s": 'does not apply to container.joints = "loose": a '
+            'loose stack starts settled; leave it out, or take "bolted"',
+            "output.stop_when_overturned": 'must be true with container.joints = "loose": what a fallen box strikes is '
+            "not modelled; leave it out",
+        },
     ),
     Rule(
         "container.joints",
@@ -289,9 +278,11 @@ JOINT_RULES = (
         "[[container.box]]",
     ),
     *left_out(
-        "joints.bolt_capacity_N",
-        _is_loose,
-        'does not apply to container.joints = "loose", which have no bolts; leave it out, or take "bolted"',
+        IS_LOOSE,
+        {
+            "joints.bolt_capacity_N": 'does not apply to container.joints = "loose", which have no bolts; leave it '
+            'out, or take "bolted"'
+        },
     ),
     Rule(
         "joints.mu_kinetic",

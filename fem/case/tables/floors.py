@@ -7,6 +7,7 @@ preset gives what the case leaves out; no preset is fitted to an experiment.
 
 import math
 from functools import partial
+from operator import attrgetter
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field
@@ -191,13 +192,12 @@ FLOOR_CASE_RULES = (
     ),
     refused("floor.corner_patch_m", _patch_does_not_fit),
     *left_out(
-        "contact.normal_penalty_Pa_m",
-        lambda case: case.floor.is_slab,
-        'belongs to floor.kind = "rigid": the stiffness of a slab follows its youngs_modulus_Pa; leave it out',
-    ),
-    *left_out(
-        "contact.tangential_ratio",
-        lambda case: case.floor.is_slab,
-        'belongs to floor.kind = "rigid": a slab has its own tangential stiffness; leave it out',
+        attrgetter("floor.is_slab"),
+        {
+            "contact.normal_penalty_Pa_m": 'belongs to floor.kind = "rigid": the stiffness of a slab follows its '
+            "youngs_modulus_Pa; leave it out",
+            "contact.tangential_ratio": 'belongs to floor.kind = "rigid": a slab has its own tangential stiffness; '
+            "leave it out",
+        },
     ),
 )

@@ -6,6 +6,7 @@ row a stop stands at its end, and a tie holds the container of the case or a nei
 """
 
 from functools import partial
+from operator import attrgetter
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict
@@ -136,8 +137,7 @@ LINK_RULES = (
     refused("tie.height_m", partial(_too_high, name="tie")),
     refused("tie.to", _before_the_wall),
     *left_out(
-        "container.mesh_file",
-        lambda case: bool(case.links),
-        "cannot stand beside [[stop]] or [[tie]]: the sides of a mesh are not known",
+        attrgetter("links"),
+        {"container.mesh_file": "cannot stand beside [[stop]] or [[tie]]: the sides of a mesh are not known"},
     ),
 )

@@ -6,6 +6,7 @@ once the gap is used up. The tables of a side go outward: the first stands next 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Annotated, Any, Literal
 
 from pydantic import Strict
@@ -161,10 +162,6 @@ def top_of(case: Any, number: int) -> float:
     return float((neighbour.boxes or own.boxes) * (neighbour.height_m or own.height_m))
 
 
-def _has_neighbours(case: Any) -> bool:
-    return bool(case.neighbour)
-
-
 NEIGHBOUR_RULES = (
     Rule(
         "neighbour.",
@@ -179,14 +176,13 @@ NEIGHBOUR_RULES = (
         'must be "rigid" with [[neighbour]]: containers in a row are rigid; an elastic one is computed alone',
     ),
     *left_out(
-        "container.joints",
-        _has_neighbours,
-        'must be "bolted" with [[neighbour]]: a side of loose boxes is no straight face',
-    ),
-    *left_out(
-        "container.mesh_file",
-        _has_neighbours,
-        "cannot stand beside [[neighbour]]: the sides of a mesh are not known",
+        attrgetter("neighbour"),
+        {
+            "container.joints": 'must be "bolted" with [[neighbour]]: a side of loose boxes is no straight face',
+            "container.mesh_file": "cannot stand beside [[neighbour]]: the sides of a mesh are not known",
+            "output.stop_when_overturned": "must be true with [[neighbour]]: what a fallen container strikes is not "
+            "modelled; leave it out",
+        },
     ),
     Rule(
         "container.box",
@@ -198,10 +194,5 @@ NEIGHBOUR_RULES = (
         lambda case: not case.neighbour or (case.support.kind == "corners" and case.support.camber_m == 0.0),
         'must be "corners" without camber_m with [[neighbour]]: each container of a row touches the floor with its '
         "corners",
-    ),
-    *left_out(
-        "output.stop_when_overturned",
-        _has_neighbours,
-        "must be true with [[neighbour]]: what a fallen container strikes is not modelled; leave it out",
     ),
 )

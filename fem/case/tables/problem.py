@@ -1,6 +1,6 @@
 """Rules between the keys of a case, and the problems of a case that breaks them."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
@@ -43,19 +43,19 @@ def refused(place: str, reason: Callable[[Any], str]) -> Rule:
     return Rule(place, lambda subject: not reason(subject), reason)
 
 
-def left_out(places: str, where: Callable[[Any], bool], words: str) -> tuple[Rule, ...]:
-    """Keys of a case, by dotted names, that must have their defaults `where` something holds of the case."""
+def left_out(where: Callable[[Any], Any], words: Mapping[str, str]) -> tuple[Rule, ...]:
+    """Keys of a case, by dotted names, that must have their defaults `where` something holds of it, and why."""
 
-    def rule(place: str) -> Rule:
+    def rule(place: str, why: str) -> Rule:
         table, _, key = place.partition(".")
 
         def holds(case: Any) -> bool:
             content = getattr(case, table)
             return getattr(content, key) == type(content).model_fields[key].default or not where(case)
 
-        return Rule(place, holds, words)
+        return Rule(place, holds, why)
 
-    return tuple(map(rule, places.split()))
+    return tuple(rule(place, why) for places, why in words.items() for place in places.split())
 
 
 def file_beside(place: str, *, below: bool = True) -> Rule:

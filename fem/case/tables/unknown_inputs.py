@@ -1,4 +1,4 @@
-"""The inputs that a case may not know, a row each: where it stands, when it matters, the range it has.
+"""The inputs that a case may not know, and their table [uncertainty]: where each stands, when it matters, its range.
 
 Where the case says nothing in its table [uncertainty], a range follows the case: static friction, and how far and in
 which way friction falls from it; the mass centre, the width on which the base bears, the slope of the floor; the
@@ -14,7 +14,9 @@ its fall as on the floor.
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Strict
 
 from contact.reference.rigid_block import RigidBlock
 from fem.case.tables import input_ranges as keys
@@ -33,6 +35,7 @@ from fem.case.tables.input_ranges import (
 )
 from fem.case.tables.motion_tables import LEAST_RAMP
 from fem.case.tables.problem import refused
+from fem.case.tables.table import CaseTable, case_key, optional_key
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
@@ -60,11 +63,7 @@ WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which f
 WEAKENINGS_BETWEEN_M = (1e-3, 3e-3)  #: a stack that rings changes from sliding to rocking there
 RAMP_CYCLES = 2.0
 #: of stops, ties and sides over those of the case
-GAPS, LINK_STIFFNESS, LINK_FRICTION = (
-    (0.8, 1.2),
-    (0.5, 2.0),
-    (0.5, 2.0),
-)
+GAPS, LINK_STIFFNESS, LINK_FRICTION = (0.8, 1.2), (0.5, 2.0), (0.5, 2.0)
 MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 SHORT_LENGTH_M = 0.1  #: told in mm
 
@@ -108,19 +107,14 @@ def _other_ramp(case: Any) -> Value | None:
     return ramp if ramp == 0.0 or ramp >= LEAST_RAMP else None
 
 
-def _is_lopsided(case: Any) -> bool:
-    """Whether left and right of a container, or what is beside it, differ: a mirrored motion is then another one."""
-    own, beside = case.container, (case.links, case.neighbour, case.floor.slope_percent)
-    axes = (stacked.axis for stacked in case.stack)
-    return any((case.initial.is_pushed, own.eccentricity_m, own.mesh_file, *beside, *axes))
-
-
 def _other_sign(case: Any, key: str) -> Value | None:
-    """The other sign of a record or a pulse by its key, where that makes a difference."""
-    motion = case.motion
+    """The other sign of a record or a pulse by its key, where left and right of the container or beside it differ."""
+    motion, box, beside = case.motion, case.container, (case.links, case.neighbour, case.floor.slope_percent)
+    axes = (stacked.axis for stacked in case.stack)
+    lopsided = any((case.initial.is_pushed, box.eccentricity_m, box.mesh_file, *beside, *axes))
     of_a_table = "scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2"
     used = {"table": of_a_table, "pulse": "peak_acceleration_m_s2"}.get(motion.kind)
-    own = getattr(motion, key) if key == used and _is_lopsided(case) else None
+    own = getattr(motion, key) if key == used and lopsided else None
     return -own if own else None
 
 
@@ -140,13 +134,9 @@ def _shares(*shares: float) -> Callable[[float, float], tuple[float, ...]]:
     return lambda low, high: tuple(short(low + share * (high - low)) for share in shares)
 
 
-def _is_cambered(case: Any) -> bool:
-    return bool(case.support.camber_m > 0.0)
-
-
 def _may_be_cambered(case: Any) -> bool:
     """Whether the base is cambered, or level and could be: of one body, with points enough to roll."""
-    if _is_cambered(case):
+    if case.support.camber_m > 0.0:
         return True
     fine = case.solver.element_size_m <= 0.25 * case.stack[0].width
     given = case.contact.restitution_over_housner is not None
@@ -163,33 +153,28 @@ def _cambers(case: Any, own: float) -> Ends:
     return low, max(own, min(high, short((case.support.effective_width * box.width) ** 2 / (16.0 * height))))
 
 
-def _block(case: Any) -> RigidBlock:
-    """The homogeneous block whose impacts stand for the container's."""
-    box = case.container
-    height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
-    return RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
-
-
 def _blocks(case: Any) -> list[RigidBlock]:
-    """Those of all whose restitution is that of the case: not of a neighbour that has a case of its own."""
-    named = [False, *(neighbour.case is not None for neighbour in case.neighbour)]
-    beside = [_block(alone) for alone, own in zip(case.row or (case,), named, strict=True) if not own]
-    return beside + blocks_on_joints(case)
+    """The homogeneous blocks whose impacts stand for those of a case, without neighbours that have their own case."""
+    blocks = []
+    for number, alone in enumerate(case.row or (case,)):
+        if number and case.neighbour[number - 1].case is not None:
+            continue
+        box = alone.container
+        height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
+        blocks.append(
+            RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=alone.gravity_m_s2)
+        )
+    return blocks + blocks_on_joints(case)
 
 
 def blocks_on_joints(case: Any) -> list[RigidBlock]:
     """What stands on each joint of a loose stack, as blocks."""
     blocks = []
     for j in range(1, case.container.bodies):
-        above = case.stack[j:]
+        above, gravity = case.stack[j:], case.gravity_m_s2
         height = sum(box.mass * (box.bottom + box.centroid) for box in above) / sum(box.mass for box in above)
-        blocks.append(
-            RigidBlock(
-                half_width=0.5 * above[0].width,
-                centroid_height=height - above[0].bottom,
-                gravity=case.gravity_m_s2,
-            )
-        )
+        height -= above[0].bottom
+        blocks.append(RigidBlock(half_width=0.5 * above[0].width, centroid_height=height, gravity=gravity))
     return blocks
 
 
@@ -230,8 +215,7 @@ def _heights(case: Any, own: float) -> Ends:
     return short(min(low, own)), short(max(high, own))
 
 
-def _beside(case: Any, own: float) -> Ends:
-    distance = BESIDE * case.container.width_m
+def _around(own: float, distance: float) -> Ends:
     return short(own - distance), short(own + distance)
 
 
@@ -291,21 +275,22 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(keys.JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
     Number(keys.CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
-           between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),), varies=_is_cambered),
+           between=lambda low, high: () if low > 0.0 else (short(BETWEEN_CAMBERS * high),),
+           varies=lambda case: case.support.camber_m > 0.0),
     Number(keys.ROCKING, "rocking_damping_ratio", "damping of rocking", q.ROCKING_DAMPING,
            _reaching(*ROCKING_DAMPING), matters=lambda case: case.rolls),
     Choice(keys.SUPPORT, "support", "contact of the base", _other_support, drawn=False),
     Number(keys.CENTROID, "centroid_m", "height of the mass centre", q.LENGTH, _heights,
            matters=lambda case: case.container.box is None and case.container.mesh_file is None, power=1.0),
-    Number("container.eccentricity_m", "eccentricity_m", "offset of the mass centre", q.OFFSET, _beside,
-           matters=_has_columns, power=1.0),
+    Number("container.eccentricity_m", "eccentricity_m", "offset of the mass centre", q.OFFSET,
+           lambda case, own: _around(own, BESIDE * case.container.width_m), matters=_has_columns, power=1.0),
     Number("support.effective_width", "effective_width", "bearing width of the base", q.EFFECTIVE_WIDTH,
            (EFFECTIVE_WIDTH, 1.0), matters=lambda case: case.solver.model != "full", power=1.0),
     Number(keys.SLOPE, "slope_percent", "slope of the floor", q.SLOPE, power=1.0,
            ends=lambda case, own: (max(q.SLOPE.least or 0.0, own - SLOPE_PERCENT),
                                    min(q.SLOPE.most or 0.0, own + SLOPE_PERCENT))),
     Number("vertical.phase_rad", "vertical_phase_rad", "phase of the vertical motion", q.PHASE,
-           lambda case, own: (short(own - math.pi), short(own + math.pi)),
+           lambda case, own: _around(own, math.pi),
            matters=lambda case: case.motion.kind == case.vertical.kind == "harmonic", power=1.0,
            between=_shares(0.25, 0.75), same=lambda value: short(math.pi - (math.pi - value) % (2.0 * math.pi))),
     Number(keys.PHASE, "phase_rad", "phase of the motion", q.PHASE, lambda case, own: (own, own),
@@ -343,12 +328,110 @@ WORDS = {unknown.key: unknown.words for unknown in UNKNOWN} | {
 }
 QUANTITIES = {unknown.key: unknown.quantity for unknown in UNKNOWN if isinstance(unknown, UnknownNumber)}
 
+#: a range [low, high], or that the value of the case is known
+Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["held", "known"] | None
 
-UNCERTAINTY_RULES = tuple(
-    refused(f"uncertainty.{unknown.name}", unknown.refusal)
-    for unknown in UNKNOWN
-    if isinstance(unknown, UnknownNumber)
-)
+
+class UncertaintyTable(CaseTable):
+    """What is not known of the inputs: [low, high], or "held" as given. The band of a run covers it."""
+
+    mu_static: Unknown = optional_key(
+        "of static friction; default: 0.9 to 1.1 times; mu_kinetic keeps its share", [0.3, 0.4]
+    )
+    mu_kinetic: Unknown = optional_key(
+        "of kinetic friction; default: half of mu_static to all of it", [0.2, 0.4]
+    )
+    joints_mu_static: Unknown = optional_key(
+        "loose joints: of static friction; default: half to twice where [joints] leaves it out", [0.2, 0.8]
+    )
+    joints_mu_kinetic: Unknown = optional_key(
+        "loose joints: of kinetic friction; default: half of mu_static to all of it", [0.2, 0.4]
+    )
+    joints_weakening_m: Unknown = optional_key(
+        "loose joints: default: 0, or 1e-4 of the width to 5 mm", [0.0, 0.005]
+    )
+    joints_damping_ratio: Unknown = optional_key("loose joints: default: 0.1 to 2, and as given", [0.1, 2.0])
+    camber_m: Unknown = optional_key(
+        "of the support; default: half to twice, of a level base flat or on feet 0 to 2 mm", [0.0, 0.002]
+    )
+    rocking_damping_ratio: Unknown = optional_key(
+        "of the support, where it is cambered; default: 0.02 to 0.1, and as given", [0.02, 0.1]
+    )
+    weakening_m: Unknown = optional_key(
+        "of the contact; default: 0, or 1e-4 of the width to 5 mm", [0.0, 0.005]
+    )
+    stribeck_velocity_m_s: Unknown = optional_key("of the contact; default: 0 to 0.3 m/s", [0.0, 0.3])
+    normal_penalty_Pa_m: Unknown = optional_key(
+        "of the contact; default: a ninth to three times", [1e9, 3e10]
+    )
+    bearing_strength_Pa: Unknown = optional_key(
+        "of the floor, slab only; default: half to twice", [25e6, 1e8]
+    )
+    floor_youngs_modulus_Pa: Unknown = optional_key(
+        "of the floor, slab only; default: half to twice", [1.5e10, 6e10]
+    )
+    damping_ratio: Unknown = optional_key("of the contact; default: half to twice", [1.0, 4.0])
+    restitution_over_housner: Unknown = optional_key(
+        "of the contact, where it is given; default: a loss 1 - e of 0.8 to 1.5 times", [0.9, 1.0]
+    )
+    material_damping_ratio: Unknown = optional_key("of the container; default: half to twice", [0.01, 0.04])
+    fill_damping_ratio: Unknown = optional_key(
+        "of the container; default: a quarter to two and a half times", [0.05, 0.5]
+    )
+    stop_gap_m: Unknown = optional_key(
+        "of the stops, where they differ the largest, and all in proportion; default: 0.8 to 1.2 times",
+        [0.04, 0.06],
+    )
+    stop_stiffness_N_m: Unknown = optional_key("of the stops, likewise; default: half to twice", [5e7, 2e8])
+    stop_mu: Unknown = optional_key("friction on the stops, likewise; default: half to twice", [0.1, 0.4])
+    tie_slack_m: Unknown = optional_key("of the ties, likewise; default: 0.8 to 1.2 times", [0.0, 0.01])
+    tie_stiffness_N_m: Unknown = optional_key("of the ties, likewise; default: half to twice", [5e5, 2e6])
+    neighbour_gap_m: Unknown = optional_key(
+        "between the neighbours, likewise; default: 0.8 to 1.2 times", [0.08, 0.12]
+    )
+    neighbour_stiffness_N_m: Unknown = optional_key(
+        "of the sides, likewise; default: half to twice", [5e7, 2e8]
+    )
+    neighbour_mu: Unknown = optional_key(
+        "friction between the sides, likewise; default: half to twice", [0.1, 0.4]
+    )
+    centroid_m: Unknown = optional_key(
+        "height of the mass centre in a box; default: 0.98 to 1.02 times", [0.45, 0.55]
+    )
+    eccentricity_m: Unknown = optional_key(
+        "of the mass centre; default: a hundredth of the width to both sides", [-0.01, 0.01]
+    )
+    effective_width: Unknown = optional_key("of the base; default: 0.97 to 1 times", [0.97, 1.0])
+    slope_percent: Unknown = optional_key(
+        "of the floor; default: half a per cent less to half a per cent more", [-0.5, 0.5]
+    )
+    vertical_phase_rad: Unknown = optional_key(
+        "of a vertical harmonic beside a horizontal one; default: the whole turn", [0.0, 3.14]
+    )
+    phase_rad: Unknown = optional_key("harmonic: of the motion; default: held", [0.0, 3.14])
+    sign: bool | Literal["held", "known"] | None = optional_key(
+        "record or pulse: whether it may come from the other side; default: true where left and right differ",
+        True,
+    )
+    vertical_sign: bool | Literal["held", "known"] | None = optional_key(
+        "record or pulse: true tries the vertical motion with the other sign; default: false", True
+    )
+    support: bool | Literal["held", "known"] | None = optional_key(
+        "corners and flat: whether the base may touch as the other does; default: true", True
+    )
+    start: bool | Literal["held", "known"] | None = optional_key(
+        "harmonic: true tries the other motion.start, a jump of the floor's velocity; default: false", True
+    )
+    ramp: bool | Literal["held", "known"] | None = optional_key(
+        "harmonic: whether a ramp of two cycles may begin it, or none; default: true", True
+    )
+    draws: Annotated[int, Strict(), q.DRAWS] = case_key("runs in which all of these are drawn at once", 32)
+
+    rules = tuple(
+        refused(f"uncertainty.{unknown.name}", unknown.refusal)
+        for unknown in UNKNOWN
+        if isinstance(unknown, UnknownNumber)
+    )
 
 
 def in_words(values: Mapping[str, Value]) -> str:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from contact.interface import laws
-from fem.case.tables.contact_tables import ContactTable
+from fem.case.tables.container_tables import ContactTable
 
 STIFFNESS, DAMPING, STEP = 2.7e9, 1.1e7, 1e-3
 DECADES = 10.0 ** np.arange(-9.0, -1.0)
