@@ -52,14 +52,9 @@ def bounce_of(case: Case, container: Container, contact: Contact) -> Bounce:
 
     `contact` is that of the points on the floor, at their full weight; points behind them do not matter.
     """
-    standing = container.row[0] if container.row else container
+    standing = container.bodies[0]
     mesh, response = standing.mesh, standing.response
-    if standing.boxes:
-        lowest = standing.boxes[0]
-        mesh, response = lowest.mesh, lowest.response
-        places = lowest.elements.nodes[lowest.corners[:2], 0]
-    else:
-        places = standing.elements.nodes[standing.nodes[: standing.support.index.size], 0]
+    places = standing.elements.nodes[standing.nodes[: standing.support.index.size], 0]
     springs = contact.normal_stiffness[: places.size]
     centre, middle = mesh.centroid[0], 0.5 * (places[0] + places[-1])
     frequency, floor_share = math.inf, 1.0

@@ -12,7 +12,7 @@ from contact.interface.support import Support
 from fem.case.case import Case
 from fem.case.tables.neighbours import Places, places_of
 from fem.model.geometry import build_container, node_count
-from fem.model.links import nodes_on_sides, places_of_links, side_points
+from fem.model.links import places_of_links, side_points
 from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import FloatArray, IntArray
@@ -30,23 +30,13 @@ ROUNDED = 9  #: decimals of the numbers by which boxes are equal
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class BoxModel:
-    """One box of a loose stack, discretised on z = 0 and centred on x = 0; equal boxes share one."""
-
-    mesh: ContainerMesh
-    elements: FiniteElements
-    #: (4,) nodes: lower left and right, upper left and right; of a container in a row in place of the upper ones those
-    #: nearest to where its sides are struck
-    corners: IntArray
-    monitors: IntArray  #: nodes whose motion is observed
-    response: StaticResponse  #: to forces at the corners; none of a rigid box
-    basis: ReducedBasis  #: elastic modes of a reduced box; none of the others
-    first: float  #: lowest elastic angular frequency; infinite for a rigid box [rad/s]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Container:
-    """A discretised container; it does not depend on floor, motion and damping, so many cases share one."""
+    """A discretised container, or one of its bodies; independent of floor, motion and damping, so many cases share one.
+
+    The bodies of a container of several are the boxes of a loose stack, each on z = 0 and centred on x = 0, or the
+    containers of a row. Their nodes are four: lower left and right, upper left and right; in a row in place of the
+    upper ones those nearest to where its sides are struck. Equal ones share one.
+    """
 
     mesh: ContainerMesh
     elements: FiniteElements
@@ -59,16 +49,16 @@ class Container:
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
-    #: of a loose stack, from the floor up; or each container of a row as one
-    boxes: tuple[BoxModel, ...] = ()
+    boxes: tuple[
+        "Container", ...
+    ] = ()  #: its bodies, of a loose stack from the floor up; none where it is one itself
     row: tuple["Container", ...] = ()  #: the containers of a row alone, that of the case first
     box_nodes: tuple[IntArray, ...] = ()  #: the node of the container for each node of each box
 
     @property
-    def corners(self) -> IntArray:
-        """Nodes at the corners of all boxes of a loose stack, in the order of `contact.interface.faces`, (4 N,)."""
-        corners = [nodes[box.corners] for box, nodes in zip(self.boxes, self.box_nodes, strict=True)]
-        return np.concatenate(corners)
+    def bodies(self) -> tuple["Container", ...]:
+        """What moves each for itself."""
+        return self.boxes or (self,)
 
     def lowest_modes(self, count: int) -> ElasticModes:
         """The lowest elastic modes of the free container: those of a reduced model, or computed.
@@ -105,7 +95,12 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
         keys = [repr((alone.container, alone.support)) for alone in case.row]
         for number, (key, alone) in enumerate(zip(keys, case.row, strict=True)):
             if key not in known:
-                known[key] = _neighbour(number, alone) if number else discretise(alone, mesh)
+                try:
+                    known[key] = discretise(alone, None if number else mesh)
+                except MeshError as error:
+                    if not number:
+                        raise
+                    raise MeshError(f"[[neighbour]] {number}, as a container: {error}") from error
         return _beside_one_another(case, [known[key] for key in keys])
     mesh = mesh or build_container(case)
     support = build_support(case, mesh)
@@ -117,20 +112,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     nodes = np.concatenate([nodes, nodes_at(places_of_links(case), elements.nodes)])
-    rigid = case.solver.model == "rigid"
-    response = _no_response(elements) if rigid else static_response(elements, nodes)
-    basis, first = _elastic(case, elements, response, modes_of_a_body(case))
-    return Container(
-        mesh=mesh,
-        elements=elements,
-        support=support,
-        nodes=nodes,
-        monitors=_monitors(elements),
-        response=response,
-        basis=basis,
-        free_modes=case.solver.elastic_modes if case.solver.model == "reduced" else 0,
-        first=first,
-    )
+    return _body(case, mesh, elements, support, nodes)
 
 
 def changed_container(case: Case, container: Container, own: Case) -> Container:
@@ -180,35 +162,54 @@ def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
     return assemble(mesh, youngs_modulus=box.youngs_modulus_Pa, poisson_ratio=box.poisson_ratio, order=order)
 
 
-def _elastic(
-    case: Case, elements: FiniteElements, response: StaticResponse, modes: int
-) -> tuple[ReducedBasis, float]:
-    """Elastic modes of a reduced model, and the lowest angular frequency [rad/s]."""
-    none = _no_modes(elements)
-    if case.solver.model == "reduced":
-        basis = reduced_basis(elements, response, modes)
-        return basis, float(basis.angular_frequencies[0])
-    if case.solver.model == "full":
-        return none, float(elastic_modes(elements, 1).angular_frequencies[0])
-    return none, math.inf
-
-
-def _no_modes(elements: FiniteElements) -> ReducedBasis:
+def _no_modes(elements: FiniteElements) -> tuple[StaticResponse, ReducedBasis]:
     nodes = elements.nodes
-    return ReducedBasis(
-        angular_frequencies=np.zeros(0),
-        shapes=np.zeros((0, *nodes.shape)),
-        stress=np.zeros((3, 0, len(nodes))),
+    return (
+        StaticResponse(displacement=np.zeros((0, *nodes.shape)), compliance=np.zeros((0, 0))),
+        ReducedBasis(
+            angular_frequencies=np.zeros(0),
+            shapes=np.zeros((0, *nodes.shape)),
+            stress=np.zeros((3, 0, len(nodes))),
+        ),
     )
 
 
-def _no_response(elements: FiniteElements) -> StaticResponse:
-    return StaticResponse(displacement=np.zeros((0, *elements.nodes.shape)), compliance=np.zeros((0, 0)))
+def _body(
+    case: Case, mesh: ContainerMesh, elements: FiniteElements, support: Support, nodes: IntArray
+) -> Container:
+    """One body that may be touched at these nodes."""
+    (response, basis), first, model = _no_modes(elements), math.inf, case.solver.model
+    if model != "rigid":
+        response = static_response(elements, nodes)
+    if model == "reduced":
+        basis = reduced_basis(elements, response, modes_of_a_body(case))
+        first = float(basis.angular_frequencies[0])
+    elif model == "full":
+        first = float(elastic_modes(elements, 1).angular_frequencies[0])
+    # what is observed: the two upper corners, then the middle and the outermost nodes of the contents
+    contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
+    held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
+    x, z = elements.nodes[held].T
+    corners = [
+        held[np.argmax(a * x / np.ptp(x) + b * z / np.ptp(z))] for a in (-1.0, 1.0) for b in (-1.0, 1.0)
+    ]
+    middle = held[np.argmin(np.hypot(x - x.mean(), z - 0.5 * (z.min() + z.max())))]
+    return Container(
+        mesh=mesh,
+        elements=elements,
+        support=support,
+        nodes=nodes,
+        monitors=np.concatenate([_upper_corners(elements), [middle, *corners]]),
+        response=response,
+        basis=basis,
+        free_modes=case.solver.elastic_modes if model == "reduced" else 0,
+        first=first,
+    )
 
 
 def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: Support) -> Container:
     """A container of boxes that share no node; boxes with equal meshes are analysed once."""
-    known: dict[tuple[bytes, ...], BoxModel] = {}
+    known: dict[tuple[bytes, ...], Container] = {}
     boxes, nodes = [], []
     for number in range(case.container.boxes):
         own = box_mesh(mesh, number)
@@ -217,40 +218,60 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
             for part in (own.points, own.quads, own.region, own.thickness, own.areal_density)
         )
         if key not in known:
-            known[key] = _box(case, own)
+            alone = _assembled(case, own)
+            corners = np.concatenate([alone.base_nodes[[0, -1]], _upper_corners(alone)])
+            known[key] = _body(case, own, alone, support, corners)
         boxes.append(known[key])
-        place = np.empty(len(boxes[-1].elements.nodes), dtype=np.int64)
-        place[boxes[-1].elements.cells] = elements.cells[mesh.box == number]
-        nodes.append(place)
+        nodes.append(_places(boxes[-1], elements.cells[mesh.box == number]))
     # Those of the uppermost box first, with its upper corners; then box by box downwards.
     monitors = [
         place[box.monitors[0 if place is nodes[-1] else 2 :]] for box, place in zip(boxes, nodes, strict=True)
     ]
-    container = _of_bodies(mesh, elements, support, np.concatenate(monitors[::-1]), boxes, nodes)
-    touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
-    return replace(container, nodes=np.append(container.corners[touching], _nodes_held(case, container)))
+    corners = np.concatenate([place[box.nodes] for box, place in zip(boxes, nodes, strict=True)])
+    touching = make_faces(elements.nodes[corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
+    return _of_bodies(
+        case, mesh, elements, support, corners[touching], np.concatenate(monitors[::-1]), boxes, nodes
+    )
+
+
+def _places(body: Container, cells: IntArray) -> IntArray:
+    """The node of the whole for each node of a body, which has these cells of the whole."""
+    place = np.empty(len(body.elements.nodes), dtype=np.int64)
+    place[body.elements.cells] = cells
+    return place
 
 
 def _of_bodies(
+    case: Case,
     mesh: ContainerMesh,
     elements: FiniteElements,
     support: Support,
+    touching: IntArray,
     monitors: IntArray,
-    boxes: Sequence[BoxModel],
+    boxes: Sequence[Container],
     nodes: Sequence[IntArray],
+    row: Sequence[Container] = (),
 ) -> Container:
-    """A container of several bodies, and the node of it for each node of each; its contact nodes are still to come."""
+    """A container of several bodies, and the node of it for each node of each."""
+    held = []  # nodes nearest to the points of links
+    for point in side_points(case):
+        x, z = boxes[point.box].elements.nodes.T
+        on_side = np.abs(x - (x.max() if point.right else x.min())) <= 1e-9 * np.ptp(x)
+        away = np.where(on_side, np.abs(z - z.min() - point.place * np.ptp(z)), math.inf)
+        held.append(nodes[point.box][int(np.argmin(away))])
+    response, basis = _no_modes(elements)
     return Container(
         mesh=mesh,
         elements=elements,
         support=support,
-        nodes=np.zeros(0, dtype=np.int64),
+        nodes=np.append(touching, np.array(held, dtype=np.int64)),
         monitors=monitors,
-        response=_no_response(elements),
-        basis=_no_modes(elements),
+        response=response,
+        basis=basis,
         free_modes=0,
         first=min(box.first for box in boxes),
         boxes=tuple(boxes),
+        row=tuple(row),
         box_nodes=tuple(nodes),
     )
 
@@ -261,39 +282,22 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
     places = places_of(case, [mesh.width for mesh in meshes])
     struck = np.array(places.struck([(mesh.width, mesh.height) for mesh in meshes]))
     elements = _assembled(case, mesh_of_row(meshes, places.x))
-    first, nodes = 0, []
-    for alone in row:
-        behind = first + len(alone.elements.cells)
-        nodes.append(np.empty(len(alone.elements.nodes), dtype=np.int64))
-        nodes[-1][alone.elements.cells] = elements.cells[first:behind]
-        first = behind
-    boxes = tuple(
-        BoxModel(
-            mesh=alone.mesh,
-            elements=alone.elements,
-            corners=np.concatenate([alone.elements.base_nodes[[0, -1]], nodes_at(at, alone.elements.nodes)]),
-            monitors=alone.monitors,
-            response=alone.response,
-            basis=alone.basis,
-            first=alone.first,
+    behind = np.cumsum([len(alone.elements.cells) for alone in row])
+    nodes = [
+        _places(alone, elements.cells[end - len(alone.elements.cells) : end])
+        for alone, end in zip(row, behind, strict=True)
+    ]
+    boxes = [
+        replace(
+            alone,
+            nodes=np.concatenate([alone.elements.base_nodes[[0, -1]], nodes_at(at, alone.elements.nodes)]),
         )
         for alone, at in zip(row, struck, strict=True)
-    )
-    monitors = nodes[0][row[0].monitors]
-    container = _of_bodies(meshes[0], elements, row[0].support, monitors, boxes, nodes)
-    container = replace(container, row=tuple(row))
-    corners = container.corners
-    touching = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
-    touched = corners[touching.corner[:, TOUCHING]]
-    return replace(container, nodes=np.append(touched, _nodes_held(case, container)))
-
-
-def _nodes_held(case: Case, container: Container) -> IntArray:
-    """Nodes of the container nearest to the points of links on its boxes, (k,)."""
-    points = side_points(case)
-    own = nodes_on_sides(points, [box.elements.nodes for box in container.boxes])
-    chosen = [container.box_nodes[point.box][node] for point, node in zip(points, own, strict=True)]
-    return np.array(chosen, dtype=np.int64)
+    ]
+    corners = np.concatenate([place[box.nodes] for box, place in zip(boxes, nodes, strict=True)])
+    faces = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
+    touching, monitors = corners[faces.corner[:, TOUCHING]], nodes[0][row[0].monitors]
+    return _of_bodies(case, meshes[0], elements, row[0].support, touching, monitors, boxes, nodes, row)
 
 
 def facing(places: Places) -> tuple[IntArray, FloatArray]:
@@ -301,44 +305,7 @@ def facing(places: Places) -> tuple[IntArray, FloatArray]:
     return np.array(places.pairs, dtype=np.int64), np.array(places.distance)
 
 
-def _neighbour(number: int, alone: Case) -> Container:
-    try:
-        return discretise(alone)
-    except MeshError as error:
-        raise MeshError(f"[[neighbour]] {number}, as a container: {error}") from error
-
-
-def _box(case: Case, mesh: ContainerMesh) -> BoxModel:
-    elements = _assembled(case, mesh)
-    corners = np.concatenate([elements.base_nodes[[0, -1]], _upper_corners(elements)])
-    response = _no_response(elements)
-    if case.solver.model != "rigid":
-        response = static_response(elements, corners)
-    basis, first = _elastic(case, elements, response, modes_of_a_body(case))
-    return BoxModel(
-        mesh=mesh,
-        elements=elements,
-        corners=corners,
-        monitors=_monitors(elements),
-        response=response,
-        basis=basis,
-        first=first,
-    )
-
-
 def _upper_corners(elements: FiniteElements) -> IntArray:
     x, z = elements.nodes.T
     top = np.flatnonzero(z >= z.max() - 1e-9 * np.ptp(z))
     return top[[np.argmin(x[top]), np.argmax(x[top])]]
-
-
-def _monitors(elements: FiniteElements) -> IntArray:
-    """Nodes to observe: the two upper corners, then the middle and the outermost nodes of the contents."""
-    contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
-    held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
-    x, z = elements.nodes[held].T
-    corners = [
-        held[np.argmax(a * x / np.ptp(x) + b * z / np.ptp(z))] for a in (-1.0, 1.0) for b in (-1.0, 1.0)
-    ]
-    middle = held[np.argmin(np.hypot(x - x.mean(), z - 0.5 * (z.min() + z.max())))]
-    return np.concatenate([_upper_corners(elements), [middle, *corners]])

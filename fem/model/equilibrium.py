@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,21 +14,31 @@ from contact.interface.workspace import Contact
 from contact.stepping.body import ROTATION
 from contact.stepping.links import LinkedBody
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.modal_body import ModalBody
 from fem.case.case import Case, CaseError
+from fem.model.bodies import (
+    body_of_row,
+    contact_of_row,
+    corners_at_rest,
+    floating_body,
+    make_stack_state,
+    measure_gaps,
+    own_stiffness,
+    require_no_jam,
+    settle,
+    stack_of,
+    with_joints,
+)
 from fem.model.bounce import bounce_of
 from fem.model.container import Container
 from fem.model.floor import slab_of
-from fem.model.links import lines_at, places_of_links, shapes_at_links, with_links
-from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
-from fem.model.row import body_of_row, contact_of_row, corners_at_rest, measure_gaps, require_no_jam
+from fem.model.links import lines_at, places_of_links, with_links
 from fem.model.support import Rolling, base_points, edge_factors, normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
-from fem.solid.assembly import FiniteElements
+from fem.solid.edges import shapes_at
 from fem.solid.elasticity import least_principal_strain
 from fem.solid.nodal_body import Body, FullBody, FullStack, rotation_matrix
-from fem.solid.reduction import StaticResponse
 
 #: error of a base point at which the iterations of a step stop, over the static penetration
 POINT_TOLERANCE = 1e-6
@@ -52,11 +63,9 @@ def find_equilibrium(
 ) -> Equilibrium:
     """Settle the container on the floor under this gravity: that of the case and the floor's acceleration at t = 0.
 
-    `penalty` is that of the rigid floor of its row [Pa/m]; None: as the case chooses.
-    Models of one equilibrium share the scratch arrays of its body: step one at a time.
-
-    Raises:
-        CaseError: no equilibrium at the start, or one that sinks or crushes the container.
+    `penalty` is that of the rigid floor of its row [Pa/m]; None: as the case chooses. Models of one equilibrium share
+    the scratch arrays of its body: step one at a time. CaseError: no equilibrium at the start, or one that sinks or
+    crushes the container.
     """
     if gravity <= 0.0:
         raise CaseError(
@@ -87,7 +96,7 @@ def find_equilibrium(
             compression = 0.0
             if case.solver.model != "rigid":
                 pressed = stance.with_points(container.nodes.size).force
-                compression = _strain(container.elements, container.response, pressed, stance.rotation)
+                compression = _strain(container, pressed, stance.rotation)
     except SettlingError as error:
         slope = case.floor.slope_percent
         table = (
@@ -145,19 +154,19 @@ def _settled_stack(
     state = make_stack_state(stack)
     forces = settle(stack, own_stiffness(contact), state, gravity=gravity)
     strains = [
-        _strain(box.elements, box.response, force, float(state.boxes[b, ROTATION]))
+        _strain(box, force, float(state.boxes[b, ROTATION]))
         for b, (box, force) in enumerate(zip(container.boxes, forces, strict=True))
     ]
     line = lines_at(case, state.point[len(state.point) - len(case.links) :], container.mesh.width)
     return _linked(stack, line), state.force, max(strains) if case.solver.model != "rigid" else 0.0
 
 
-def _linked(stack: LooseStack | FullStack, line: FloatArray | None) -> LooseStack | LinkedBody | FullStack:
-    """A loose stack or a row with its links."""
-    if isinstance(stack, FullStack):
-        stack.line = line
-        return stack
-    return stack if line is None else LinkedBody(body=stack, line=line)
+def _linked(body: Any, line: FloatArray | None) -> Any:
+    """A body with its links."""
+    if isinstance(body, FullBody | FullStack):
+        body.line = line
+        return body
+    return body if line is None else LinkedBody(body=body, line=line)
 
 
 def same_equilibrium(case: Case, other: Case) -> bool:
@@ -171,11 +180,11 @@ def same_equilibrium(case: Case, other: Case) -> bool:
     )
 
 
-def _strain(elements: FiniteElements, response: StaticResponse, force: FloatArray, rotation: float) -> float:
+def _strain(body: Container, force: FloatArray, rotation: float) -> float:
     """Largest compressive strain under forces (n, 2) [N] at the points of the response [-]."""
-    own = (force @ rotation_matrix(rotation)).ravel()
-    displacement = np.tensordot(own[: len(response.displacement)], response.displacement, axes=1)
-    return -least_principal_strain(elements.displacement_gradient(displacement))
+    own, response = (force @ rotation_matrix(rotation)).ravel(), body.response.displacement
+    displacement = np.tensordot(own[: len(response)], response, axes=1)
+    return -least_principal_strain(body.elements.displacement_gradient(displacement))
 
 
 def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
@@ -219,9 +228,8 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
     )
 
 
-def _body(
-    case: Case, container: Container, contact: Contact, stance: Stance
-) -> ModalBody | LinkedBody | FullBody:
+def _body(case: Case, container: Container, contact: Contact, stance: Stance) -> Any:
+    """One body, as it is stepped."""
     elements, mesh = container.elements, container.mesh
     gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
     nodes, monitors = container.nodes, container.monitors
@@ -232,28 +240,22 @@ def _body(
         placed[links] = places_of_links(case)
     line = lines_at(case, _at_rest(case, container, placed, stance)[links], mesh.width)
     if case.solver.model == "full":
-        return FullBody(
-            elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping, line=line
-        )
-    centroid, basis = np.asarray(mesh.centroid), container.basis
-    shapes = basis.shapes[:, nodes]
-    shapes[:, links] = shapes_at_links(case, elements.nodes, basis.shapes)
+        body = FullBody(elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping)
+        return _linked(body, line)
+    shapes = container.basis.shapes[:, nodes]
+    shapes[:, links] = shapes_at(places_of_links(case), elements.nodes, container.basis.shapes)
     penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
-    body = make_modal_body(
-        mass=mesh.mass,
-        inertia=mesh.inertia,
-        gravity=gravity,
-        downhill=downhill,
-        point=placed - centroid,
+    floating = floating_body(
+        case,
+        container,
+        placed=placed,
+        shapes=shapes,
+        watched=monitors,
         rest=mesh.centroid,
-        shape=np.moveaxis(shapes, 0, -1),
-        frequencies=basis.angular_frequencies,
-        damping_ratios=0.5 * damping * basis.angular_frequencies,
-        monitor=elements.nodes[monitors] - centroid,
-        monitor_shape=np.moveaxis(basis.shapes[:, monitors], 0, -1),
+        damping=damping,
         tolerance=POINT_TOLERANCE * penetration,
     )
-    return body if line is None else LinkedBody(body=body, line=line)
+    return _linked(floating, line)
 
 
 def _at_rest(case: Case, container: Container, placed: FloatArray, stance: Stance) -> FloatArray:
@@ -270,7 +272,8 @@ def _at_rest(case: Case, container: Container, placed: FloatArray, stance: Stanc
         response = container.response.displacement
         displacement = response[:, container.nodes]
         if case.solver.model == "reduced":
-            displacement[:, -len(case.links) :] = shapes_at_links(case, container.elements.nodes, response)
+            at = places_of_links(case)
+            displacement[:, -len(at) :] = shapes_at(at, container.elements.nodes, response)
         shape = shape + np.tensordot(own, displacement, axes=1)
     return np.asarray(stance.centre) + shape @ turn.T
 

@@ -17,8 +17,7 @@ from mesh.stack import StackedBox, build_bolted_mesh, build_loose_mesh
 def build_container(case: Case) -> ContainerMesh:
     """The case's container: from its mesh file if it names one, else structured; loose boxes share no node.
 
-    Raises:
-        CaseError, MeshError: a mesh file that is missing or does not fit; walls, posts or a mass that are impossible.
+    CaseError, MeshError: a mesh file that is missing or does not fit; walls, posts or a mass that are impossible.
     """
     container, size, foot = case.container, case.solver.element_size_m, case.foot
     file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None

@@ -17,7 +17,6 @@ from fem.case.tables.links import StopTable, TieTable, holder_of
 from fem.case.tables.neighbours import USUAL_DAMPING, StruckTable, top_of
 from fem.model.link_places import box_at, direction_of, overlapped, side_of
 from fem.runtime.arrays import FloatArray
-from fem.solid.edges import shapes_at
 
 OVERLAP = 1e-9  #: overlap at the start that is rounding [m]
 
@@ -43,22 +42,6 @@ def side_points(case: Case) -> tuple[SidePoint, ...]:
         place = min((link.height_m - bottom) / height, 1.0)
         places.append(SidePoint(box=number, right=link.side == "right", place=place))
     return tuple(places)
-
-
-def nodes_on_sides(points: Sequence[SidePoint], boxes: Sequence[FloatArray]) -> list[int]:
-    """For each point the nearest node of its box; `boxes`: the nodes (n, 2) of each."""
-    nodes = []
-    for point in points:
-        x, z = boxes[point.box].T
-        on_side = np.abs(x - (x.max() if point.right else x.min())) <= 1e-9 * np.ptp(x)
-        away = np.where(on_side, np.abs(z - z.min() - point.place * np.ptp(z)), math.inf)
-        nodes.append(int(np.argmin(away)))
-    return nodes
-
-
-def shapes_at_links(case: Case, nodes: FloatArray, shapes: FloatArray) -> FloatArray:
-    """Shapes of modes (m, n, 2) at the points of the links, (m, k, 2): linear between the nodes of the side, (n, 2)."""
-    return shapes_at(places_of_links(case), nodes, shapes)
 
 
 def heights_of_links(case: Case, nodes: FloatArray) -> list[float]:
@@ -123,11 +106,7 @@ def lines_at(case: Case, place: FloatArray, width: float) -> FloatArray | None:
 
 
 def begin_links(case: Case, body: Any, state: State) -> None:
-    """Measure the points of links from their links, in a state whose points are over the floor.
-
-    Raises:
-        CaseError: a link is overlapped at the start.
-    """
+    """Measure the points of links, which are over the floor in this state, from their links; CaseError: an overlap."""
     line: FloatArray | None = getattr(body, "line", None)
     if line is None:
         return

@@ -31,17 +31,16 @@ from contact.stepping.state import (
 )
 from fem.case.case import Case
 from fem.case.tables.duration import ends_at_rest
+from fem.model.bodies import begin_row, make_stack_state, own_stiffness, settle
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.floor import slab_of
 from fem.model.frames import frame_interval
 from fem.model.links import begin_links
-from fem.model.loose_stack import make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, motions_end, peaks_in_run
 from fem.model.peaks import ROUNDING, stress_bounds, stressed_nodes
 from fem.model.resting import still_from
 from fem.model.restitution import require_loss
-from fem.model.row import begin_row
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -103,8 +102,7 @@ class Model:
         container = self.container
         if self.case.solver.model == "full":
             return [np.array([container.first]) / (2.0 * np.pi)]
-        bodies = container.boxes or (container,)
-        return [body.basis.angular_frequencies / (2.0 * np.pi) for body in bodies]
+        return [body.basis.angular_frequencies / (2.0 * np.pi) for body in container.bodies]
 
     @property
     def elastic_modes(self) -> int:
@@ -246,12 +244,12 @@ def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatA
 
 def _joints(case: Case, container: Container, static: StaticChecks, row: Sequence[StaticChecks]) -> Any:
     """Records of what stands on the floor, and of the joints of a loose stack: `JOINT_RECORD`."""
-    meshes = [each.mesh for each in container.row or container.boxes or [container]]
+    meshes = [body.mesh for body in container.bodies]
     shares = [alone.contact.restitution_over_housner or 1.0 for alone in case.row or [case]]
     return make_joints(
         [mesh.mass for mesh in meshes],
         [mesh.inertia for mesh in meshes],
-        [mesh.width for mesh in meshes] if container.row or container.boxes else static.width,
+        [mesh.width for mesh in meshes] if container.boxes else static.width,
         [checks.slenderness_angle for checks in row or [static]],
         impact_share=shares,
         in_a_row=bool(container.row),
@@ -262,13 +260,9 @@ def _watched_stresses(case: Case, container: Container) -> Stresses:
     """The stress of a reduced model beside its contacts: impacts strain it there, where the energy shows it least."""
     if case.solver.model != "reduced":
         return NO_STRESSES
-    if container.boxes:
-        bases = [
-            (box.basis, stressed_nodes(case, box.elements, box.basis, box.corners)) for box in container.boxes
-        ]
-    else:
-        nodes = stressed_nodes(case, container.elements, container.basis, container.nodes)
-        bases = [(container.basis, nodes)]
+    bases = [
+        (body.basis, stressed_nodes(case, body.elements, body.basis, body.nodes)) for body in container.bodies
+    ]
     modes = max(basis.angular_frequencies.size for basis, _ in bases)
     points = max(nodes.size for _, nodes in bases)
     of_modes, bounds = np.zeros((len(bases), modes, points, 3)), np.zeros(len(bases))

@@ -182,11 +182,7 @@ def _plausible(motion: TableMotion, table: MotionKey) -> TableMotion:
 
 
 def build_motion(case: Case, table: MotionKey = "motion") -> SingleMotion:
-    """The motion [motion] of the case, or [vertical], positive upward.
-
-    Raises:
-        CaseError: the file of a table is missing or is no table of motion; an impossible motion.
-    """
+    """The motion [motion] of the case, or [vertical], positive upward; CaseError: its file, or an impossible motion."""
     try:
         return _build(case, table)
     except CaseError:

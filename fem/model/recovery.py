@@ -1,11 +1,11 @@
 """Recovery of fields on the whole mesh from the coordinates of a body: displacement, velocity, von Mises stress."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from fem.model.container import BoxModel, Container
 from fem.model.model import Model
 from fem.model.peaks import ROUNDING, counted_nodes, stress_bounds
 from fem.runtime.arrays import FloatArray, IntArray
@@ -137,13 +137,11 @@ class Recovery:
 def recovery_of(model: Model) -> Recovery:
     """Recovery of the fields of this model."""
     container, full = model.container, model.case.solver.model == "full"
-    standing: list[tuple[Container | BoxModel, IntArray | slice]] = [
-        *zip(container.boxes, container.box_nodes, strict=True)
-    ] or [(container, slice(None))]
     known: dict[int, BodyRecovery] = {}
     bodies, start = [], 0
-    size = 3 + max(body.basis.angular_frequencies.size for body, _ in standing)
-    for body, nodes in standing:
+    size = 3 + max(body.basis.angular_frequencies.size for body in container.bodies)
+    places: Sequence[IntArray | slice] = container.box_nodes or (slice(None),)
+    for body, nodes in zip(container.bodies, places, strict=True):
         elements, basis = body.elements, body.basis
         if id(body) not in known:
             known[id(body)] = BodyRecovery(

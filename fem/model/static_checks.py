@@ -366,11 +366,7 @@ def static_checks_of(
 
 
 def wind_check(case: Case, mesh: ContainerMesh, static: StaticChecks) -> ActionCheck:
-    """Sliding and overturning of a case's container, as it is, under its [wind] (`fem.seismic.wind`).
-
-    Raises:
-        CaseError: the container is higher than the rule or the pressure holds.
-    """
+    """Sliding and overturning of a container as it is under its [wind]; CaseError: it is higher than the rule holds."""
     half, height = static.radius * math.sin(static.slenderness_angle), static.centroid
     body = LooseBody(
         block=RigidBlock(

@@ -65,13 +65,11 @@ def largest_step_of(
     """Largest step of the run [s], and the instants that a step must end on, rising [s].
 
     A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
+    CaseError: a given step that is too long for a motion.
 
     Args:
         rocking: frequency parameter, of a row the largest of all [1/s].
         duration: its `longest_run` [s].
-
-    Raises:
-        CaseError: a given step that is too long for a motion.
     """
     solver, output, eager = case.solver, case.output, steps_eagerly(case)
     largest, ends = STEP_OF_ROCKING / rocking, set[float]()
@@ -122,8 +120,8 @@ def _struck_mass(case: Case, container: Container) -> float:
     if case.solver.model == "full":
         return float(container.elements.nodal_mass[container.nodes[0]])
     masses = []
-    for body in container.boxes or [container]:
-        for corner in container.nodes[:1] if isinstance(body, Container) else body.corners:
+    for body in container.bodies:
+        for corner in body.nodes if container.boxes else body.nodes[:1]:
             arm = float(body.elements.nodes[corner, 0] - body.mesh.centroid[0])
             elastic = float(np.sum(body.basis.shapes[:, corner, 1] ** 2))
             masses.append(1.0 / (1.0 / body.mesh.mass + arm * arm / body.mesh.inertia + elastic))
@@ -196,11 +194,7 @@ def control_of(
 
 
 def scheme_of(case: Case, container: Container, penalty: float, control: Control, contact: Contact) -> Scheme:
-    """Time-stepping scheme of the case; `penalty` is the normal stiffness of the base [Pa/m].
-
-    Raises:
-        CaseError: a Newmark run without averaging that would gain energy.
-    """
+    """Time-stepping scheme; `penalty`: of the base [Pa/m]. CaseError: a Newmark run that would gain energy."""
     solver = case.solver
     if solver.scheme == "generalised-alpha":
         return generalised_alpha(solver.spectral_radius)

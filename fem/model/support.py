@@ -68,12 +68,9 @@ class Rolling:
     def of(cls, case: Case, mesh: ContainerMesh) -> "Rolling | None":
         """That of a case; None where the base does not roll.
 
-        A body on an arc of radius R swings with I theta'' + M g (R - z_c) theta = 0, I about the place that touches.
-        A resultant that is ahead by the time tau adds M g R tau theta', so a damping ratio zeta of these small swings
-        is tau = 2 zeta (R - z_c)/(R omega).
-
-        Raises:
-            CaseError: the base is so round that the container does not stand on it.
+        A body on an arc of radius R swings with I theta'' + M g (R - z_c) theta = 0, I about the place that touches. A
+        resultant that is ahead by the time tau adds M g R tau theta', so a damping ratio zeta of these small swings is
+        tau = 2 zeta (R - z_c)/(R omega). CaseError: the base is so round that the container does not stand on it.
         """
         support, height = case.support, mesh.centroid[1]
         if not case.rolls:

@@ -1,33 +1,173 @@
-"""A row: containers beside one another on one floor, as one body whose sides may touch.
+"""Several bodies as one on their floor: the boxes of a loose stack, or the containers of a row, whose sides may touch.
 
-Each is built and settled alone, by its own case. The first is that of the case itself; behind it stand the neighbours
-in the order of the case. Its coordinates are in a frame of its own, so that a gap that nothing uses up changes no bit.
+A joint between two boxes has the springs of a rigid floor under the face that they share, and friction and dashpot of
+its own. Each contact point has the spring of a corner; two corners that face each other share it.
+
+Each container of a row is built and settled alone, by its own case. The first is that of the case itself; behind it
+stand the neighbours in the order of the case. Its coordinates are in a frame of its own, so that a gap that nothing
+uses up changes no bit.
 """
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from contact.interface.contact_points import ASIDE
 from contact.interface.equilibrium import Stance
-from contact.interface.faces import place_points, weigh_points
+from contact.interface.faces import CORNERS, place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
+from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
-from contact.stepping.body import State
+from contact.stepping.body import State, make_state
 from contact.stepping.boxes import POINTS_OF_GAP
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import ModalBody
-from contact.stepping.stack_body import make_stack, start_stack
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.stack_body import make_stack, settle_stack, start_stack
 from fem.case.case import Case, CaseError
+from fem.case.tables.boxes import shared_face
 from fem.case.tables.neighbours import places_of
+from fem.model.bounce import bounce_of
 from fem.model.container import Container, facing
 from fem.model.links import OVERLAP, appended, dashpot_of, side_points
-from fem.model.loose_stack import make_stack_state
-from fem.runtime.arrays import FloatArray
-from fem.solid.nodal_body import rotation_matrix
+from fem.model.support import base_points
+from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid.nodal_body import FullBody, rotation_matrix
 from mesh.container import ContainerMesh
+
+#: step above which the solver begins at the old positions of held points, over 1/(angular bounce frequency): in the
+#: short steps of a rattle the old forces are the better guess
+HELD_SHARE = 0.15
+TURNED_STEPS = 4  #: without line search, where points turn: corners that rattle turn in cycles
+
+
+def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Contact:
+    """The contact of the floor under the lowest box, extended by the joints between boxes of this `mass` in all [kg].
+
+    `penalty`: normal stiffness of a face over width times depth [Pa/m].
+    """
+    stack, friction, chosen, depth = case.stack, case.joint_friction, case.contact, case.container.depth_m
+    faces = [shared_face(*pair) for pair in pairwise(stack)]
+    springs = np.repeat([0.5 * penalty * (right - left) * depth for left, right in faces], CORNERS)
+    damping = relaxation_time(case.joints.dashpot, mass, penalty * stack[0].width * depth)
+
+    joints = appended(
+        floor,
+        springs.size,
+        normal_stiffness=springs,
+        tangential_stiffness=chosen.tangential_ratio * springs,
+        relaxation_time=damping,
+        mu_static=friction["mu_static"],
+        mu_kinetic=friction["mu_kinetic"],
+        weakening=friction["weakening_m"],
+    )
+    held_step = HELD_SHARE * math.sqrt(mass / float(floor.normal_stiffness.sum()))
+    return joints._replace(held_step=held_step, turned_steps=TURNED_STEPS)
+
+
+def floating_body(
+    case: Case,
+    body: Container,
+    *,
+    placed: FloatArray,
+    shapes: FloatArray,
+    watched: IntArray,
+    rest: tuple[float, float],
+    damping: float,
+    tolerance: float,
+) -> ModalBody:
+    """A container or a box in its floating frame.
+
+    Args:
+        placed: its contact points (n, 2) [m]; shapes: of its modes there, (m, n, 2).
+        watched: nodes whose motion is observed; rest: its mass centre where it stands undeformed [m].
+        damping: a of C = a K [s]; tolerance: error of a point at which a step stops iterating [m].
+    """
+    centroid, basis = np.asarray(body.mesh.centroid), body.basis
+    return make_modal_body(
+        mass=body.mesh.mass,
+        inertia=body.mesh.inertia,
+        gravity=case.gravity_toward_floor,
+        downhill=case.gravity_downhill,
+        point=placed - centroid,
+        rest=rest,
+        shape=np.moveaxis(shapes, 0, -1),
+        frequencies=basis.angular_frequencies,
+        damping_ratios=0.5 * damping * basis.angular_frequencies,
+        monitor=body.elements.nodes[watched] - centroid,
+        monitor_shape=np.moveaxis(basis.shapes[:, watched], 0, -1),
+        tolerance=tolerance,
+    )
+
+
+def stack_of(case: Case, container: Container, contact: Contact, tolerance: float) -> LooseStack | FullStack:
+    """The boxes of a loose stack as one body; `tolerance`: error of a corner at which a step stops iterating [m]."""
+    springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
+    damping = bounce_of(case, container, contact).material_damping
+    gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
+    nodal, modal = [], []
+    for number, (box, place) in enumerate(zip(container.boxes, case.stack, strict=True)):
+        # what is monitored: its contents; of the uppermost box its upper corners before them
+        watched = box.monitors if number == len(container.boxes) - 1 else box.monitors[2:]
+        if case.solver.model == "full":
+            placed = replace(box.elements, nodes=container.elements.nodes[container.box_nodes[number]])
+            nodal.append(
+                FullBody(placed, box.nodes, watched, gravity=gravity, downhill=downhill, damping=damping)
+            )
+            continue
+        centroid, corners = box.mesh.centroid, box.elements.nodes[box.nodes]
+        modal.append(
+            floating_body(
+                case,
+                box,
+                placed=base_points(case, container.mesh, corners, 2 if number == 0 else 0),
+                shapes=box.basis.shapes[:, box.nodes],
+                watched=watched,
+                rest=(place.axis + float(centroid[0]), place.bottom + float(centroid[1])),
+                damping=damping,
+                tolerance=tolerance,
+            )
+        )
+    if case.solver.model == "full":
+        responses = [box.response for box in container.boxes]
+        return FullStack(nodal, responses, *springs, tolerance, side_points(case))
+    return make_stack(modal, *springs, held=side_points(case))
+
+
+def make_stack_state(stack: LooseStack | FullStack) -> State:
+    """A state of a stack, all zero."""
+    if isinstance(stack, FullStack):
+        coordinates, beneath = stack.coordinates, stack.stack
+        monitors = int(beneath.body.monitors.max())
+    else:
+        beneath, body = stack, stack.body
+        coordinates, monitors = len(body.boxes.mass) * (3 + body.modes), len(body.boxes.monitor)
+    return make_state(coordinates, beneath.faces.weight.size, monitors, beneath.mass.size)
+
+
+def settle(stack: LooseStack | FullStack, contact: Contact, state: State, **moving: Any) -> FloatArray:
+    """Write the state of a stack at rest, as `settle_stack` with these arguments.
+
+    Returns:
+        The forces on its corners, along x and z, shape (N, 4, 2) [N].
+    """
+    if isinstance(stack, FullStack):
+        stack.settle(contact, state, **moving)
+        stack = stack.stack
+    else:
+        settle_stack(stack, contact, state, **moving)
+    return stack.corners.force.reshape(-1, CORNERS, 2)
+
+
+def own_stiffness(contact: Contact) -> Contact:
+    """The contact with springs of its own, which the weights of its points change."""
+    return contact._replace(
+        normal_stiffness=contact.normal_stiffness.copy(),
+        tangential_stiffness=contact.tangential_stiffness.copy(),
+    )
 
 
 def require_no_jam(case: Case, meshes: Sequence[ContainerMesh]) -> None:
@@ -140,11 +280,7 @@ def begin_row(
 ) -> State:
     """The initial state of a row from those of its containers alone; `contact` has a stiffness of its own, written.
 
-    Args:
-        place: of the floor, along x and upward [m]; lift_velocity: of it, upward [m/s].
-
-    Raises:
-        CaseError: two of them overlap.
+    `place` and `lift_velocity` are those of the floor [m], [m/s]. CaseError: two of them overlap.
     """
     boxes, state, floor = body.body.boxes, make_stack_state(body), 2 * len(alone)
     for name in ("position", "velocity"):
