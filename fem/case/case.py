@@ -18,12 +18,13 @@ from fem.case import data_files
 from fem.case.case_rules import CASE_RULES
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import kinds_of, naming_overrides, parse_override, with_overrides
-from fem.case.tables.all_tables import CaseContent
+from fem.case.tables.all_tables import TABLES, CaseContent
+from fem.case.tables.floors import PENALTY_KEYS
 from fem.case.tables.links import LINK_RULES, ROWS
 from fem.case.tables.neighbours import CORNER_PATCH, beside, case_of
-from fem.case.tables.problem import broken
+from fem.case.tables.problem import Problem, broken, outside_the_folder, stays_in_the_folder
 from fem.case.tables.unknown_inputs import excluded_values
-from fem.case.toml import resolved_tables, toml_document
+from fem.case.toml import toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
 from fem.records.columns import given_record, written
 from fem.records.record import Direction, Record
@@ -134,8 +135,63 @@ class Case(CaseContent):
         return self._origin.recorded
 
     def resolved(self) -> dict[str, Any]:
-        """Every key that is used, defaults included, by table; files are named as their copies in the results are."""
-        return resolved_tables(self)
+        """Every key that is used, defaults included, by table; files are named as their copies in the results are.
+
+        A case without vertical motion, on a level rigid floor, of equal bolted prisms that bear on all of their base,
+        without stops and ties, has no keys of these, and keeps its hash. What [joints] leaves out stays out: the
+        floor's friction stands in its place, and the band treats it as unknown.
+        """
+        document = self.model_dump(by_alias=True, exclude={*TABLES, *ROWS})
+        level = not self.floor.is_slab and self.floor.slope_percent == 0.0
+        joints = self.container.is_loose and any(value is not None for value in vars(self.joints).values())
+        says_nothing = {"vertical": not self.has_vertical, "floor": level, "joints": not joints}
+        for name in TABLES:
+            table = getattr(self, name)
+            if table is None or says_nothing.get(name, False):
+                continue
+            idle: tuple[str, ...] = ()
+            if name == "contact" and self.floor.is_slab:
+                idle = (*PENALTY_KEYS, *(["damping_ratio"] if self.contact_damping_ratio is None else []))
+            document[name] = {
+                key: value
+                for key, value in table.model_dump().items()
+                if value is not None and key not in idle and not table.is_idle(key)
+            }
+        container, support = document["container"], document["support"]
+        if not self.container.is_loose:
+            del container["joints"]
+            if self.joints.bolt_capacity_N is not None and self.container.bolted_joints:
+                document["joints"] = {"bolt_capacity_N": self.joints.bolt_capacity_N}
+        for table, key, usual in (
+            (container, "shape", "prism"),
+            (container, "eccentricity_m", 0.0),
+            (support, "effective_width", 1.0),
+        ):
+            if table[key] == usual:
+                del table[key]
+        if self.support.camber_m == 0.0:
+            del support["camber_m"], support["rocking_damping_ratio"]
+        if self.container.box is not None:
+            del container["boxes"]
+            # with all that each takes from [container], so that the file reads back to the same boxes
+            container["box"] = [
+                {
+                    **{"width_m": box.width, "height_m": box.height, "mass_kg": box.mass},
+                    **{"centroid_m": box.centroid} | ({} if box.wall is None else {"wall_m": box.wall}),
+                    "offset_m": table.offset_m,
+                }
+                for box, table in zip(self.stack, self.container.box, strict=True)
+            ]
+        for name in ROWS:
+            rows = [table.model_dump(by_alias=True, exclude_none=True) for table in getattr(self, name)]
+            document |= {name: rows} if rows else {}
+        for dotted in data_files.FILE_KEYS:
+            name, _, key = dotted.partition(".")
+            content = document.get(name, [])
+            for table in content if name in ROWS else [content]:
+                if key in table:
+                    table[key] = data_files.copied_name(self.folder, table[key])
+        return document
 
     def with_values(self, values: Mapping[str, Any]) -> "Case":
         """This case with dotted keys set, such as `contact.mu_static`; alternatives are replaced.
@@ -345,7 +401,12 @@ def _plain(value: Any) -> Any:
 
 def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any]) -> Case:
     values, problems = read_case_tables(data)
-    problems += data_files.outside_problems(values, trusted=origin.trusted)
+    for dotted in data_files.FILE_KEYS:
+        table, _, key = dotted.partition(".")
+        name = getattr(values.get(table), key, None)
+        if name is not None and dotted not in origin.trusted and not stays_in_the_folder(name):
+            reason = outside_the_folder(name) + data_files.WAYS_OUT
+            problems.append(Problem(table=table, key=key, reason=reason))
     if problems:
         lines = problem_lines(problems, f"{origin.place}: ")
         raise CaseError("\n".join(naming_overrides(lines, overrides)))

@@ -65,11 +65,7 @@ ALWAYS = ColumnGroup(
 #: a floor that crushes: the work of that
 CRUSHING = ColumnGroup(lambda case: range(case.floor.is_slab), (HistoryColumn("crushing_J", "J", START),))
 #: a restitution that was asked for: what the impacts lost by it, < 0 where they return energy
-IMPACTS = ColumnGroup(
-    lambda case: range(case.states_restitution),
-    (HistoryColumn("impact_J", "J", START),),
-)
-
+IMPACTS = ColumnGroup(lambda case: range(case.states_restitution), (HistoryColumn("impact_J", "J", START),))
 
 #: a floor that moves up and down, or normal to a slope; positive upward
 VERTICAL = ColumnGroup(

@@ -7,9 +7,8 @@ the command line may lie anywhere. A motion may name a channel of its file behin
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any
 
-from fem.case.tables.problem import Problem, outside_the_folder, stays_in_the_folder
+from fem.case.tables.problem import stays_in_the_folder
 from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path
 
@@ -30,17 +29,17 @@ class DataFile:
 
 def split_channel(folder: Path, name: str) -> tuple[Path, str]:
     """The file that a name means, and the channel behind "#"; a file that has "#" in its own name is found, too."""
-    whole = _path(folder, name)
+
+    def path_of(name: str) -> Path:
+        path = folder / name
+        # A path of Windows, where it is no name of a file here.
+        return path if "\\" not in name or path.exists() else folder / name.replace("\\", "/")
+
+    whole = path_of(name)
     stem, mark, channel = name.rpartition("#")
     if not mark or not stem or whole.is_file():
         return whole, ""
-    return _path(folder, stem), channel
-
-
-def _path(folder: Path, name: str) -> Path:
-    path = folder / name
-    # A path of Windows, where it is no name of a file here.
-    return path if "\\" not in name or path.exists() else folder / name.replace("\\", "/")
+    return path_of(stem), channel
 
 
 def find_data_files(
@@ -88,17 +87,6 @@ def copied_name(folder: Path, name: str) -> str:
         return name
     path, channel = split_channel(folder, name)
     return f"{COPIES}/{path.name}" + (f"#{channel}" if channel else "")
-
-
-def outside_problems(tables: Mapping[str, Any], *, trusted: frozenset[str]) -> list[Problem]:
-    """Keys that name files outside the folder of the case and are not to be trusted."""
-    problems = []
-    for dotted in FILE_KEYS:
-        table, _, key = dotted.partition(".")
-        name = getattr(tables.get(table), key, None)
-        if name is not None and dotted not in trusted and not stays_in_the_folder(name):
-            problems.append(Problem(table=table, key=key, reason=outside_the_folder(name) + WAYS_OUT))
-    return problems
 
 
 def place_of(dotted: str) -> str:

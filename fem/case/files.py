@@ -101,9 +101,16 @@ class Collection:
         is_folder = os.path.isdir(name)
         if os.path.exists(name) and not is_folder:
             path = Path(name)
-            return Origin(
-                kind=self.kind, name=path.stem, place=str(path), folder=path.parent, text=_read_text(path)
-            )
+            try:
+                content = read_regular(path, LARGEST_FILE)
+            except ValueError as error:
+                raise CaseError(f"{path} {error}") from None
+            try:
+                text = content.decode("utf-8-sig")  # editors on Windows put a mark in front
+            except UnicodeDecodeError as error:
+                line = content[: error.start].count(b"\n") + 1
+                raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error
+            return Origin(kind=self.kind, name=path.stem, place=str(path), folder=path.parent, text=text)
         if name in self.names:
             return self.shipped(name)
         if name and is_folder:
@@ -195,15 +202,3 @@ def is_site(name_or_path: str | Path) -> bool:
 def _other_kind(place: str, kind: str) -> str:
     article = "an" if kind == "ensemble" else "a"
     return f"{place}: this is {article} {kind} file: python -m fem {COMMANDS[kind]} {place}"
-
-
-def _read_text(path: Path) -> str:
-    try:
-        content = read_regular(path, LARGEST_FILE)
-    except ValueError as error:
-        raise CaseError(f"{path} {error}") from None
-    try:
-        return content.decode("utf-8-sig")  # editors on Windows put a mark in front
-    except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error

@@ -90,7 +90,14 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
     """
     heading: dict[str, Any] = {}
     problems: list[Problem] = []
-    data = with_friction_range(data)
+    contact, unknown = data.get("contact"), data.get("uncertainty", {})
+    if isinstance(contact, dict) and isinstance(unknown, dict) and "mu_static" not in unknown:
+        ends = contact.get("mu_static")
+        if isinstance(ends, list) and len(ends) == 2 and all(isinstance(end, int | float) for end in ends):
+            # contact.mu_static = [low, high] is its middle, and its range in [uncertainty]
+            low, high = map(float, ends)
+            contact = {**contact, "mu_static": short(0.5 * (low + high))}
+            data = {**data, "contact": contact, "uncertainty": {**unknown, "mu_static": [low, high]}}
     for key, value in data.items():
         if key in TABLES and not isinstance(value, dict):
             reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
@@ -126,27 +133,9 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
 def _in_part(model: type[ModelT], values: Mapping[str, Any]) -> ModelT:
     """A table or a case as far as it could be read: what asks for one of its other keys raises AttributeError."""
     part = model.__new__(model)
-    kept = {"__dict__": dict(values), "__pydantic_fields_set__": set(values)}
-    for name, value in (kept | dict.fromkeys(("__pydantic_extra__", "__pydantic_private__"))).items():
-        object.__setattr__(part, name, value)
+    object.__setattr__(part, "__dict__", dict(values))
+    object.__setattr__(part, "__pydantic_fields_set__", set(values))
     return part
-
-
-def with_friction_range(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables with `contact.mu_static = [low, high]` as its middle, and as its range in [uncertainty]."""
-    contact, unknown = data.get("contact"), data.get("uncertainty", {})
-    if not isinstance(contact, dict) or not isinstance(unknown, dict) or "mu_static" in unknown:
-        return data
-    ends = contact.get("mu_static")
-    if not isinstance(ends, list) or len(ends) != 2 or not all(isinstance(end, int | float) for end in ends):
-        return data
-    low, high = map(float, ends)
-    middle = short(0.5 * (low + high))
-    return {
-        **data,
-        "contact": {**contact, "mu_static": middle},
-        "uncertainty": {**unknown, "mu_static": [low, high]},
-    }
 
 
 def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
@@ -165,11 +154,20 @@ def read_table(
 ) -> tuple[dict[str, Any], dict[str, Any], list[Problem]]:
     """Values as given, values by field with defaults as far as readable, and problems."""
     known = known_keys(model)
-    problems = [
-        Problem(table=name, key="", reason=_unknown_key(name, key, known))
-        for key in content
-        if key not in known
-    ]
+    problems = []
+    for key in (key for key in content if key not in known):
+        reason = left_words(f"{name}.{key}")
+        elsewhere = [
+            f"[{other}]" for other, table in TABLES.items() if other != name and key in known_keys(table)
+        ]
+        if elsewhere:
+            way_out = f"it belongs into {' or '.join(elsewhere)}"
+        elif name and key in TOP:
+            way_out = "it belongs before the first table"
+        else:
+            way_out = did_you_mean(key, known)
+        unknown = f"unknown key {key[:80]!r}{'; ' + way_out if way_out else ''} (known: {', '.join(known)})"
+        problems.append(Problem(table=name, key="", reason=f"{key!r} {reason}" if reason else unknown))
     given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
         given["box"], of_boxes = _read_rows(
@@ -277,16 +275,3 @@ def _shown(value: object) -> str:
     if isinstance(value, datetime.date | datetime.time):
         return f"the date or time {value}"
     return kind + with_unit(value, "")
-
-
-def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
-    if words := left_words(f"{table}.{key}"):
-        return f"{key!r} {words}"
-    elsewhere = [f"[{name}]" for name, model in TABLES.items() if name != table and key in known_keys(model)]
-    if elsewhere:
-        way_out = f"it belongs into {' or '.join(elsewhere)}"
-    elif table and key in TOP:
-        way_out = "it belongs before the first table"
-    else:
-        way_out = did_you_mean(key, known)
-    return f"unknown key {key[:80]!r}{'; ' + way_out if way_out else ''} (known: {', '.join(known)})"

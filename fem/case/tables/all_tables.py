@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
-from fem.case.tables.boxes import Box, boxes_of, joint_friction
+from fem.case.tables.boxes import Box, centroid_at, plan_share
 from fem.case.tables.container_tables import ContactTable, ContainerTable, JointsTable, SupportTable
 from fem.case.tables.floors import FloorTable
 from fem.case.tables.links import StopTable, TieTable
@@ -42,7 +42,6 @@ TABLES: dict[str, type[CaseTable]] = {
     "uncertainty": UncertaintyTable,
     "document": DocumentTable,
 }
-
 
 #: tables that mean something by standing in a case file; the others have their defaults where they do not
 OPTIONAL = frozenset({"static", "wind", "limits", "document"})
@@ -89,8 +88,34 @@ class CaseContent(CaseHeading):
 
     @cached_property
     def stack(self) -> tuple[Box, ...]:
-        """All boxes, from the floor up."""
-        return boxes_of(self.container, self.gravity_m_s2)
+        """All boxes, from the floor up; raises KeyError where a box has no mass."""
+        container, gravity, boxes = self.container, self.gravity_m_s2, list[Box]()
+        axis = bottom = 0.0
+        for number, table in enumerate(container.box or (None,) * container.boxes):
+            own = vars(table) if table is not None else {}
+            given = vars(container) | {key: value for key, value in own.items() if value is not None}
+            width, height, mass = given["width_m"], given["height_m"], given["mass_kg"]
+            if own.get("mass_kg") is None and container.weight_N is not None:
+                mass = container.weight_N / gravity
+            elif mass is None and container.density_kg_m3 is not None:
+                mass = container.density_kg_m3 * (width * height * container.depth_m * plan_share(container))
+            if mass is None:
+                raise KeyError("mass_kg")
+            axis += own.get("offset_m", 0.0)
+            centroid = own.get("centroid_m")
+            boxes.append(
+                Box(
+                    width=width,
+                    height=height,
+                    mass=mass,
+                    centroid=centroid_at(container, height) if centroid is None else centroid,
+                    wall=given["wall_m"] if container.section == "shell" else None,
+                    axis=axis,
+                    bottom=number * height if table is None else bottom,
+                )
+            )
+            bottom += height
+        return tuple(boxes)
 
     @property
     def links(self) -> tuple[StopTable | TieTable, ...]:
@@ -131,8 +156,15 @@ class CaseContent(CaseHeading):
 
     @property
     def joint_friction(self) -> dict[str, float]:
-        """mu_static, mu_kinetic and weakening_m between loose boxes."""
-        return joint_friction(self.joints, self.contact)
+        """mu_static, mu_kinetic and weakening_m between loose boxes: those of [contact] where [joints] leaves them out.
+
+        A mu_static below mu_kinetic of the floor takes that with it.
+        """
+        joints, floor = self.joints, self.contact
+        static = floor.mu_static if joints.mu_static is None else joints.mu_static
+        kinetic = min(floor.mu_kinetic, static) if joints.mu_kinetic is None else joints.mu_kinetic
+        weakening = floor.weakening_m if joints.weakening_m is None else joints.weakening_m
+        return {"mu_static": static, "mu_kinetic": kinetic, "weakening_m": weakening}
 
     @property
     def box_mass(self) -> float:

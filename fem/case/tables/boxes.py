@@ -53,37 +53,6 @@ def centroid_at(container: Any, height: float) -> float:
     return 0.5 * height if half else float(container.centroid_m)
 
 
-def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
-    """All boxes of a table [container], from the floor up; raises KeyError where a box has no mass."""
-    boxes: list[Box] = []
-    axis = bottom = 0.0
-    for number, table in enumerate(container.box or (None,) * container.boxes):
-        own = vars(table) if table is not None else {}
-        given = vars(container) | {key: value for key, value in own.items() if value is not None}
-        width, height, mass = given["width_m"], given["height_m"], given["mass_kg"]
-        if own.get("mass_kg") is None and container.weight_N is not None:
-            mass = container.weight_N / gravity
-        elif mass is None and container.density_kg_m3 is not None:
-            mass = container.density_kg_m3 * (width * height * container.depth_m * plan_share(container))
-        if mass is None:
-            raise KeyError("mass_kg")
-        axis += own.get("offset_m", 0.0)
-        centroid = own.get("centroid_m")
-        boxes.append(
-            Box(
-                width=width,
-                height=height,
-                mass=mass,
-                centroid=centroid_at(container, height) if centroid is None else centroid,
-                wall=given["wall_m"] if container.section == "shell" else None,
-                axis=axis,
-                bottom=number * height if table is None else bottom,
-            )
-        )
-        bottom += height
-    return tuple(boxes)
-
-
 def least_weakening(case: Any) -> float:
     """The slip over which friction falls at the least [m]: what slips less still sticks, and then it falls at once."""
     return float(MICROSLIP * max(box.width for box in case.stack))
@@ -123,17 +92,6 @@ def centre_above(boxes: tuple[Box, ...], number: int) -> float:
     """x of the mass centre of the box of this number, from 0, and all boxes above it [m]."""
     above = boxes[number:]
     return sum(box.mass * box.axis for box in above) / sum(box.mass for box in above)
-
-
-def joint_friction(joints: Any, floor: Any) -> dict[str, float]:
-    """mu_static, mu_kinetic and weakening_m between loose boxes: those of [contact] where [joints] leaves them out.
-
-    A mu_static below mu_kinetic of the floor takes that with it.
-    """
-    static = floor.mu_static if joints.mu_static is None else joints.mu_static
-    kinetic = min(floor.mu_kinetic, static) if joints.mu_kinetic is None else joints.mu_kinetic
-    weakening = floor.weakening_m if joints.weakening_m is None else joints.weakening_m
-    return {"mu_static": static, "mu_kinetic": kinetic, "weakening_m": weakening}
 
 
 #: of each box of [[container.box]]: what must hold of it, and the reason where it does not; see `_each`
@@ -249,7 +207,6 @@ BOX_RULES = (
     *(_each(*fault) for fault in BOX_FAULTS),
     refused("container.box", _unsupported),
 )
-
 
 IS_LOOSE = attrgetter("container.is_loose")
 JOINT_RULES = (

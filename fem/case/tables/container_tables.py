@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, GetJsonSchemaHandler, Strict, Valid
 from pydantic_core import CoreSchema
 
 from fem.case.tables import quantities as q
-from fem.case.tables.problem import Rule, file_beside
+from fem.case.tables.problem import Rule, file_beside, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 #: damping ratio of a mode in which the fill alone moved, by kind of fill. Grains in a container that is not full take
@@ -43,26 +43,18 @@ def _smallest(box: Any) -> float:
 MASSES = {"weight_N": q.WEIGHT, "mass_kg": q.MASS, "density_kg_m3": q.DENSITY}
 
 
-def _masses(box: Any) -> dict[str, float]:
-    """The keys of `MASSES` that are given."""
-    return {key: value for key in MASSES if (value := getattr(box, key)) is not None}
-
-
 def _not_one_mass(box: Any) -> str:
-    given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in _masses(box).items()]
+    masses = {key: value for key in MASSES if (value := getattr(box, key)) is not None}
+    own = not masses and box.box is not None and all(each.mass_kg is not None for each in box.box)
+    if own or len(masses) == 1:
+        return ""
+    given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in masses.items()]
     rule = ", mass_kg, density_kg_m3: exactly one of the three must be given, "
     return rule + (f"got {', '.join(given)}; keep one of them" if given else "none is given")
 
 
 CONTAINER_RULES = (
-    Rule(
-        "container.weight_N",
-        lambda box: (
-            len(_masses(box)) == 1
-            or not (_masses(box) or box.box is None or any(own.mass_kg is None for own in box.box))
-        ),
-        _not_one_mass,
-    ),
+    refused("container.weight_N", _not_one_mass),
     Rule(
         "container.wall_m",
         lambda box: box.section == "solid" or box.wall_m is not None or box.box is not None,
@@ -250,12 +242,10 @@ class SupportTable(CaseTable):
     foot_m: Annotated[float, q.FOOT] = case_key(
         "length of each foot from its corner, feet only", 0.15, only=("kind", "feet")
     )
-
     effective_width: Annotated[float, q.EFFECTIVE_WIDTH] = case_key(
         "width between the points about which it rocks, over width_m: rounded or worn edges; rigid, reduced",
         1.0,
     )
-
     casting_m: Annotated[list[Annotated[float, q.CASTING]], Field(min_length=3, max_length=3)] | None = (
         optional_key(
             "[width, depth, inset from the side] of a corner casting, two behind each other; corners only",
@@ -356,7 +346,6 @@ class JointsTable(CaseTable):
         "loose joints: c/(2 sqrt(k m)), all boxes' mass m on the spring k of a corner on a rigid floor; default: 2",
         0.5,
     )
-
     bolt_capacity_N: Annotated[float, q.CORNER_FORCE] | None = optional_key(
         "bolted joints: tension that all bolts along one edge carry, as two twistlocks", 500e3
     )

@@ -71,7 +71,16 @@ class UnknownNumber(NamedTuple):
         own, stated = own_value(case, self.key, penalty), getattr(case.uncertainty, self.name)
         if own is None or not self.matters(case):
             return None
-        low, high = self._default(case, own) if stated is None else (own, own) if stated in HELD else stated
+        if stated is not None:
+            low, high = (own, own) if stated in HELD else stated
+        elif isinstance(self.ends, tuple):
+            least, most = self.quantity.least or 0.0, (self.quantity.below or math.inf) * (1.0 - 1e-9)
+            low, high = (
+                short(max(least, self.ends[0] * own)),
+                short(min(most, self.quantity.most or math.inf, self.ends[1] * own)),
+            )
+        else:
+            low, high = self.ends(case, own)
         ends = {self.same(end) for end in (low, high)}
         least = min(high, max(low, self.tried_from(case)))
         between = (value for value in self.between(low, high) if least < value < high and value != own)
@@ -83,13 +92,6 @@ class UnknownNumber(NamedTuple):
             drawn=partial(self._drawn, least, high) if self.varies(case) else None,
             alone=self.alone(case),
         )
-
-    def _default(self, case: Any, own: float) -> Ends:
-        if not isinstance(self.ends, tuple):
-            return self.ends(case, own)
-        least, most = self.quantity.least or 0.0, (self.quantity.below or math.inf) * (1.0 - 1e-9)
-        low, high = self.ends
-        return short(max(least, low * own)), short(min(most, self.quantity.most or math.inf, high * own))
 
     def _drawn(self, low: float, high: float, place: float) -> float:
         if self.power is not None:

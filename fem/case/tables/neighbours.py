@@ -136,20 +136,23 @@ def places_of(case: Any, widths: Sequence[float]) -> Places:
     return Places(x=tuple(x), pairs=tuple(pairs), distance=tuple(distance))
 
 
+def _order(case: Any) -> list[int]:
+    """Numbers of the containers of a row from left to right; 0: that of the case itself."""
+    row = [0]
+    for number, neighbour in enumerate(case.neighbour, 1):
+        row.insert(len(row) if neighbour.side == "right" else 0, number)
+    return row
+
+
 def outermost(case: Any, side: str) -> int:
     """Number of the last neighbour on a side of a case; 0, the container itself, where it has none there."""
-    return max(
-        (number for number, neighbour in enumerate(case.neighbour, 1) if neighbour.side == side), default=0
-    )
+    return _order(case)[-1 if side == "right" else 0]
 
 
 def beside_of(case: Any, number: int, side: str) -> int | None:
     """Number of the container of a row beside another one, on a side of that; None where there is none."""
-    row = [0]
-    for further, neighbour in enumerate(case.neighbour, 1):
-        row.insert(len(row) if neighbour.side == "right" else 0, further)
-    place = row.index(number) + (1 if side == "right" else -1)
-    return row[place] if 0 <= place < len(row) else None
+    row = [None, *_order(case), None]
+    return row[row.index(number) + (1 if side == "right" else -1)]
 
 
 def top_of(case: Any, number: int) -> float:

@@ -7,7 +7,7 @@ The ranges include every container that the program can compute; they catch slip
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from functools import partial
 from typing import Any
 
@@ -15,14 +15,15 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Quantity:
     """A finite number with its unit and range, as metadata of an annotated `float`."""
 
     unit: str = ""  #: SI unit as printed; empty for a pure number
     least: float | None = None  #: smallest value allowed
-    above: float | None = None  #: every value allowed is greater than this
     most: float | None = None  #: largest value allowed
+    _: KW_ONLY
+    above: float | None = None  #: every value allowed is greater than this
     below: float | None = None  #: every value allowed is less than this
     typical: float | None = None  #: an ordinary magnitude, to choose between guesses
     #: other unit -> what one of it is in SI
@@ -115,134 +116,107 @@ TONNES = {"t/m3 (g/cm3)": 1e3}
 SLOW, MILLISECONDS = {"mm/s": 1e-3}, {"milliseconds": 1e-3}
 LOADS = {"kilonewtons": 1e3, "tonnes": 9.81e3}
 PASCALS = {"GPa (kN/mm2)": 1e9, "MPa (N/mm2)": 1e6}
-metres = partial(Quantity, unit="m", slips=MILLI_AND_CENTI)
+metres = partial(Quantity, "m", slips=MILLI_AND_CENTI)
 
-LENGTH = metres(least=1e-3, most=100.0, typical=1.0)
-WALL = metres(least=1e-6, most=50.0, typical=0.01)
-CASTING = metres(least=0.0, most=10.0, typical=0.17)
-POST = metres(least=1e-4, most=10.0, typical=0.05)
-CORNER_FORCE = Quantity(unit="N", least=1.0, most=1e12, typical=5e5, slips=LOADS)
-CAMBER = metres(least=0.0, most=1.0, typical=5e-3)
-FOOT = metres(least=1e-6, most=100.0, typical=0.1)
-ELEMENT_SIZE = metres(least=1e-5, most=100.0, typical=0.1)
-OFFSET = metres(least=-100.0, most=100.0, typical=0.1)
-GRAVITY = Quantity(unit="m/s2", least=1e-2, most=100.0, typical=9.81, slips={"cm/s2": 1e-2, "mm/s2": 1e-3})
-WEIGHT = Quantity(unit="N", above=0.0, typical=25e3, slips={"kilonewtons": 1e3, "meganewtons": 1e6})
-MASS = Quantity(unit="kg", above=0.0, typical=2.5e3, slips={"tonnes": 1e3})
+LENGTH = metres(1e-3, 100.0, typical=1.0)
+WALL = metres(1e-6, 50.0, typical=0.01)
+CASTING = metres(0.0, 10.0, typical=0.17)
+POST = metres(1e-4, 10.0, typical=0.05)
+CORNER_FORCE = Quantity("N", 1.0, 1e12, typical=5e5, slips=LOADS)
+CAMBER = metres(0.0, 1.0, typical=5e-3)
+FOOT = metres(1e-6, 100.0, typical=0.1)
+ELEMENT_SIZE = metres(1e-5, 100.0, typical=0.1)
+OFFSET = metres(-100.0, 100.0, typical=0.1)
+GRAVITY = Quantity("m/s2", 1e-2, 100.0, typical=9.81, slips={"cm/s2": 1e-2, "mm/s2": 1e-3})
+WEIGHT = Quantity("N", above=0.0, typical=25e3, slips={"kilonewtons": 1e3, "meganewtons": 1e6})
+MASS = Quantity("kg", above=0.0, typical=2.5e3, slips={"tonnes": 1e3})
 # From the lightest foam to heavier than osmium: the mean of walls, fill and what is empty.
-DENSITY = Quantity(unit="kg/m3", least=5.0, most=25e3, typical=2e3, slips=TONNES)
-WALL_DENSITY = Quantity(unit="kg/m3", least=50.0, most=25e3, typical=7850.0, slips=TONNES)
-STIFFNESS = Quantity(unit="Pa", least=1e6, most=1e13, typical=2.1e11, slips=PASCALS | {"kN/cm2": 1e7})
-POISSON = Quantity(least=0.0, most=0.5, advice="steel has 0.3")
+DENSITY = Quantity("kg/m3", 5.0, 25e3, typical=2e3, slips=TONNES)
+WALL_DENSITY = Quantity("kg/m3", 50.0, 25e3, typical=7850.0, slips=TONNES)
+STIFFNESS = Quantity("Pa", 1e6, 1e13, typical=2.1e11, slips=PASCALS | {"kN/cm2": 1e7})
+POISSON = Quantity("", 0.0, 0.5, advice="steel has 0.3")
 MATERIAL_DAMPING = Quantity(least=0.0, below=1.0, typical=0.02, slips=PER_CENT)
 ROCKING_DAMPING = Quantity(least=0.0, below=1.0, typical=0.05, slips=PER_CENT)
-CONTACT_DAMPING = Quantity(least=0.0, most=1e3, advice="2 is usual")
-RESTITUTION = Quantity(
-    least=0.5, most=2.0, typical=1.0, slips=PER_CENT, advice="measured on concrete: 0.93 to 1.05"
-)
-LINK_HEIGHT = metres(least=0.0, most=1e3, typical=0.5)
-GAP = metres(least=0.0, most=1e3, typical=0.05, advice="a gap below 0 would overlap at the start")
+CONTACT_DAMPING = Quantity("", 0.0, 1e3, advice="2 is usual")
+RESTITUTION = Quantity("", 0.5, 2.0, typical=1.0, slips=PER_CENT, advice="measured on concrete: 0.93 to 1.05")
+LINK_HEIGHT = metres(0.0, 1e3, typical=0.5)
+GAP = metres(0.0, 1e3, typical=0.05, advice="a gap below 0 would overlap at the start")
 LINK_STIFFNESS = Quantity(
-    unit="N/m", least=1.0, most=1e12, typical=1e7, slips={"kN/m": 1e3, "kN/mm": 1e6}, advice="1e8 is a kerb"
+    "N/m", 1.0, 1e12, typical=1e7, slips={"kN/m": 1e3, "kN/mm": 1e6}, advice="1e8 is a kerb"
 )
-LINK_FORCE = Quantity(
-    unit="N", least=1.0, most=1e12, typical=1e5, slips=LOADS, advice="what holds nothing is left out"
-)
+LINK_FORCE = Quantity("N", 1.0, 1e12, typical=1e5, slips=LOADS, advice="what holds nothing is left out")
 STOP_RESTITUTION = Quantity(
-    least=0.005,
-    most=1.0,
+    "",
+    0.005,
+    1.0,
     typical=0.5,
     slips=PER_CENT,
     advice="below that take damping_ratio = 10, which leaves 0.25 % of the velocity",
 )
-FRICTION = Quantity(
-    least=0.0, most=5.0, typical=0.4, slips=PER_CENT, advice="steel on concrete has 0.3 to 0.4"
-)
+FRICTION = Quantity("", 0.0, 5.0, typical=0.4, slips=PER_CENT, advice="steel on concrete has 0.3 to 0.4")
 SLIP_VELOCITY = Quantity(
-    unit="m/s",
-    least=1e-9,
-    most=1.0,
-    typical=1e-3,
-    slips=SLOW,
-    advice="about 1e-3 of the largest slip velocity is usual",
+    "m/s", 1e-9, 1.0, typical=1e-3, slips=SLOW, advice="about 1e-3 of the largest slip velocity is usual"
 )
-PENALTY = Quantity(unit="Pa/m", least=1.0, most=1e20, advice='"auto" chooses it')
-FLOOR_STIFFNESS = Quantity(
-    unit="Pa", least=1e5, most=1e12, typical=3e10, slips=PASCALS, advice="concrete has 3e10"
-)
+PENALTY = Quantity("Pa/m", 1.0, 1e20, advice='"auto" chooses it')
+FLOOR_STIFFNESS = Quantity("Pa", 1e5, 1e12, typical=3e10, slips=PASCALS, advice="concrete has 3e10")
 # 0.5 is a fluid: no shear, and the half-space does not yield at all
 FLOOR_POISSON = Quantity(least=0.0, below=0.5, advice="concrete has 0.2, rubber 0.49")
 BEARING_STRENGTH = Quantity(
-    unit="Pa",
-    least=1e4,
-    most=1e11,
-    typical=5e7,
-    slips=PASCALS | {"kN/m2 (kPa)": 1e3},
-    advice="concrete has 2.5e7 to 1e8",
+    "Pa", 1e4, 1e11, typical=5e7, slips=PASCALS | {"kN/m2 (kPa)": 1e3}, advice="concrete has 2.5e7 to 1e8"
 )
-PATCH = metres(least=1e-4, most=100.0, typical=0.02)
-SLOPE = Quantity(
-    unit="per cent", least=-60.0, most=60.0, advice="1 to 2 is usual for drainage, 40 to 60 in tilt tests"
-)
-EFFECTIVE_WIDTH = Quantity(least=0.5, most=1.0, advice="0.97 to 1 is usual")
-DRAWS = Quantity(least=0, most=1024, advice="32 is usual")
-RATIO = Quantity(least=1e-6, most=1e3, advice="1 is usual")
-WEAKENING = Quantity(
-    unit="m", least=0.0, most=0.1, typical=1e-4, slips={"micrometres": 1e-6, "millimetres": 1e-3}
-)
-STRIBECK_VELOCITY = Quantity(
-    unit="m/s", least=0.0, most=10.0, typical=0.1, slips=SLOW, advice="0.3 is a slow fall"
-)
-AMPLITUDE = metres(least=0.0, most=10.0, typical=0.05)
-PEAK_ACCELERATION = Quantity(unit="m/s2", least=-100.0, most=100.0, typical=4.0, slips=GAL)
+PATCH = metres(1e-4, 100.0, typical=0.02)
+SLOPE = Quantity("per cent", -60.0, 60.0, advice="1 to 2 is usual for drainage, 40 to 60 in tilt tests")
+EFFECTIVE_WIDTH = Quantity("", 0.5, 1.0, advice="0.97 to 1 is usual")
+DRAWS = Quantity("", 0, 1024, advice="32 is usual")
+RATIO = Quantity("", 1e-6, 1e3, advice="1 is usual")
+WEAKENING = Quantity("m", 0.0, 0.1, typical=1e-4, slips={"micrometres": 1e-6, "millimetres": 1e-3})
+STRIBECK_VELOCITY = Quantity("m/s", 0.0, 10.0, typical=0.1, slips=SLOW, advice="0.3 is a slow fall")
+AMPLITUDE = metres(0.0, 10.0, typical=0.05)
+PEAK_ACCELERATION = Quantity("m/s2", -100.0, 100.0, typical=4.0, slips=GAL)
 ANGULAR_FREQUENCY = Quantity(
-    unit="rad/s", least=0.0628, most=628.4, advice="0.01 to 100 Hz; a frequency f in Hz is 2 pi f in rad/s"
+    "rad/s", 0.0628, 628.4, advice="0.01 to 100 Hz; a frequency f in Hz is 2 pi f in rad/s"
 )
-FREQUENCY = Quantity(unit="Hz", least=0.01, most=100.0, advice="a period T in s is a frequency 1/T in Hz")
-PHASE = Quantity(
-    unit="rad", least=-6.2832, most=6.2832, typical=1.0, slips=DEGREES, advice="one turn is 2 pi"
-)
+FREQUENCY = Quantity("Hz", 0.01, 100.0, advice="a period T in s is a frequency 1/T in Hz")
+PHASE = Quantity("rad", -6.2832, 6.2832, typical=1.0, slips=DEGREES, advice="one turn is 2 pi")
 CYCLES = Quantity(above=0.0, most=1e7)
-RAMP_CYCLES = Quantity(least=0.0, most=1e7)
-PULSE_DURATION = Quantity(unit="s", least=1e-9, most=1e4, advice="milliseconds are 1e-3 s")
-DELAY = Quantity(unit="s", least=0.0, most=1e4)
-SAMPLE_INTERVAL = Quantity(
-    unit="s", least=1e-6, most=10.0, typical=0.005, slips=MILLISECONDS, advice="0.005 is usual"
-)
-RECORD_TIME = Quantity(unit="s", least=-1e6, most=1e6)
-SCALE = Quantity(least=-1e6, most=1e6)
+RAMP_CYCLES = Quantity("", 0.0, 1e7)
+PULSE_DURATION = Quantity("s", 1e-9, 1e4, advice="milliseconds are 1e-3 s")
+DELAY = Quantity("s", 0.0, 1e4)
+SAMPLE_INTERVAL = Quantity("s", 1e-6, 10.0, typical=0.005, slips=MILLISECONDS, advice="0.005 is usual")
+RECORD_TIME = Quantity("s", -1e6, 1e6)
+SCALE = Quantity("", -1e6, 1e6)
 ROTATION = Quantity(
-    unit="rad",
+    "rad",
     above=-math.pi / 2,
     below=math.pi / 2,
     typical=0.1,
     slips=DEGREES,
     advice="at a quarter turn the container lies on its side",
 )
-ANGULAR_VELOCITY = Quantity(unit="rad/s", least=-100.0, most=100.0, typical=0.5, slips=DEGREES)
-VELOCITY = Quantity(unit="m/s", least=-100.0, most=100.0, typical=0.5, slips=SLOW)
-GROUND_ACCELERATION = Quantity(unit="m/s2", least=0.0, most=50.0, typical=1.6, slips=GAL)
-SOIL_FACTOR = Quantity(least=0.1, most=5.0, advice="EN 1998-1:2004, Table 3.2 has 1.0 to 1.8")
+ANGULAR_VELOCITY = Quantity("rad/s", -100.0, 100.0, typical=0.5, slips=DEGREES)
+VELOCITY = Quantity("m/s", -100.0, 100.0, typical=0.5, slips=SLOW)
+GROUND_ACCELERATION = Quantity("m/s2", 0.0, 50.0, typical=1.6, slips=GAL)
+SOIL_FACTOR = Quantity("", 0.1, 5.0, advice="EN 1998-1:2004, Table 3.2 has 1.0 to 1.8")
 CORNER_PERIOD = Quantity(
-    unit="s", above=0.0, most=10.0, advice="EN 1998-1:2004, Tables 3.2 and 3.3 have 0.25 to 0.8"
+    "s", above=0.0, most=10.0, advice="EN 1998-1:2004, Tables 3.2 and 3.3 have 0.25 to 0.8"
 )
-BEHAVIOUR_FACTOR = Quantity(least=1.0, most=10.0, advice="1.0 is elastic, 1.5 is usual")
-IMPORTANCE_FACTOR = Quantity(least=0.1, most=5.0, advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4")
-WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
-GAMMA_MU = Quantity(least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
-SPECTRAL_RADIUS = Quantity(least=0.0, most=1.0, advice="0.5 is usual; 1 does not damp")
+BEHAVIOUR_FACTOR = Quantity("", 1.0, 10.0, advice="1.0 is elastic, 1.5 is usual")
+IMPORTANCE_FACTOR = Quantity("", 0.1, 5.0, advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4")
+WIND = Quantity("Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
+GAMMA_MU = Quantity("", 1.0, 3.0, advice="1.3 is usual for scaffolds")
+SPECTRAL_RADIUS = Quantity("", 0.0, 1.0, advice="0.5 is usual; 1 does not damp")
 NEWMARK_BETA = Quantity(above=0.0, most=1.0, advice="1/4 is the average acceleration")
-NEWMARK_GAMMA = Quantity(least=0.5, most=1.5, advice="1/2 is of second order and does not damp")
-ENERGY_TOLERANCE = Quantity(least=1e-3, most=30.0, advice="1 is usual, 10 is enough for maps")
-SLIP_LIMIT = Quantity(unit="m", least=0.0, most=100.0, advice="a clearance such as 0.1")
-STEP = Quantity(unit="s", least=1e-9, most=10.0, advice='"auto" chooses it')
-DURATION = Quantity(unit="s", least=1e-3, most=1e4, typical=20.0, slips=MILLISECONDS)
-SAMPLING = Quantity(unit="s", least=1e-7, most=1e4)
-CONTENTS_FILTER = Quantity(unit="Hz", least=1.0, most=1000.0, advice="33 is usual")
-FRAME_INTERVAL = Quantity(unit="s", least=0.0, most=1e4, advice="0 writes no fields")
+NEWMARK_GAMMA = Quantity("", 0.5, 1.5, advice="1/2 is of second order and does not damp")
+ENERGY_TOLERANCE = Quantity("", 1e-3, 30.0, advice="1 is usual, 10 is enough for maps")
+SLIP_LIMIT = Quantity("m", 0.0, 100.0, advice="a clearance such as 0.1")
+STEP = Quantity("s", 1e-9, 10.0, advice='"auto" chooses it')
+DURATION = Quantity("s", 1e-3, 1e4, typical=20.0, slips=MILLISECONDS)
+SAMPLING = Quantity("s", 1e-7, 1e4)
+CONTENTS_FILTER = Quantity("Hz", 1.0, 1000.0, advice="33 is usual")
+FRAME_INTERVAL = Quantity("s", 0.0, 1e4, advice="0 writes no fields")
 
-NEIGHBOUR = Quantity(least=1, most=5)
-BOXES = Quantity(least=1, most=50)
-MODE_COUNT = Quantity(least=0, most=1000)
-ORDER = Quantity(least=1, most=2, advice="1 is bilinear, 2 quadratic")
-SCHEMA = Quantity(least=1, most=1, advice="this program reads schema 1")
+NEIGHBOUR = Quantity("", 1, 5)
+BOXES = Quantity("", 1, 50)
+MODE_COUNT = Quantity("", 0, 1000)
+ORDER = Quantity("", 1, 2, advice="1 is bilinear, 2 quadratic")
+SCHEMA = Quantity("", 1, 1, advice="this program reads schema 1")
