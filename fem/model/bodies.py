@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 
 from contact.interface.contact_points import ASIDE
-from contact.interface.equilibrium import Stance
 from contact.interface.faces import CORNERS, place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import relaxation_time
@@ -35,7 +34,7 @@ from fem.model.container import Container, facing
 from fem.model.links import OVERLAP, appended, dashpot_of, side_points
 from fem.model.support import base_points
 from fem.runtime.arrays import FloatArray, IntArray
-from fem.solid.nodal_body import FullBody, rotation_matrix
+from fem.solid.nodal_body import FullBody, FullStack
 from mesh.container import ContainerMesh
 
 #: step above which the solver begins at the old positions of held points, over 1/(angular bounce frequency): in the
@@ -234,16 +233,6 @@ def body_of_row(
         watched.append(body._replace(point=np.array(corner) - body.rest, shape=np.zeros((len(corner), 2, 0))))
     springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
     return make_stack(watched, *springs, (*facing(places), np.array(inset)), held=side_points(case))
-
-
-def corners_at_rest(body: LooseStack, stances: Sequence[Stance | None]) -> FloatArray:
-    """Corners of the containers of a row at rest, each in its own frame, (N, 4, 2) [m]; without a stance undeformed."""
-    boxes = body.body.boxes
-    standing: FloatArray = boxes.rest[:, None] + boxes.point
-    for b, stance in enumerate(stances):
-        if stance is not None:
-            standing[b] = np.asarray(stance.centre) + boxes.point[b] @ rotation_matrix(stance.rotation).T
-    return standing
 
 
 def measure_gaps(body: LooseStack, standing: FloatArray, contact: Contact) -> None:

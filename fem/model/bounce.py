@@ -21,7 +21,6 @@ import numpy as np
 from contact.interface.workspace import Contact
 from fem.case.case import Case
 from fem.model.container import Container
-from mesh.container import ContainerMesh
 
 #: a corner force is averaged over this, over 1/p, and over this share of the period of the bounce, at most
 FORCE_WINDOW, SHARE_OF_BOUNCE = 0.01, 0.1
@@ -72,19 +71,14 @@ def bounce_of(case: Case, container: Container, contact: Contact) -> Bounce:
             frequency, floor_share = own, 1.0 / stiffness / compliance
     box = case.container
     damping = 2.0 * box.damping_ratio / container.first
-    damping += 2.0 * fill_share(case, mesh) * box.fill_damping_ratio / frequency
+    fill = 0.0  # its share in the mass of a box of steel plates; of others none
+    if box.section == "shell" and box.mesh_file is None:
+        area, _ = mesh.elevation.areas_and_centroids
+        fill = max(0.0, 1.0 - box.wall_density_kg_m3 * float(mesh.thickness @ area) / mesh.mass)
+    damping += 2.0 * fill * box.fill_damping_ratio / frequency
     return Bounce(
         angular_frequency=frequency,
         container_damping_ratio=0.5 * (1.0 - floor_share) * damping * frequency,
         contact_damping_ratio=0.5 * floor_share * float(contact.relaxation_time[0]) * frequency,
         material_damping=damping if container.first < math.inf else 0.0,
     )
-
-
-def fill_share(case: Case, mesh: ContainerMesh) -> float:
-    """Share of the fill in the mass of a box of steel plates [-]; 0 of a solid block, and of a mesh from a file."""
-    if case.container.section != "shell" or case.container.mesh_file is not None:
-        return 0.0
-    area, _ = mesh.elevation.areas_and_centroids
-    steel = case.container.wall_density_kg_m3 * float(mesh.thickness @ area)
-    return max(0.0, 1.0 - steel / mesh.mass)

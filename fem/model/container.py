@@ -49,9 +49,8 @@ class Container:
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
-    boxes: tuple[
-        "Container", ...
-    ] = ()  #: its bodies, of a loose stack from the floor up; none where it is one itself
+    #: its bodies, of a loose stack from the floor up; none where it is one itself
+    boxes: tuple["Container", ...] = ()
     row: tuple["Container", ...] = ()  #: the containers of a row alone, that of the case first
     box_nodes: tuple[IntArray, ...] = ()  #: the node of the container for each node of each box
 
@@ -136,11 +135,9 @@ def adapted_container(case: Case, container: Container, own: Case) -> Container 
         mesh = build_container(case)
         boxes = tuple(replace(box, mesh=box_mesh(mesh, number)) for number, box in enumerate(container.boxes))
         container = replace(container, mesh=mesh, boxes=boxes)
-    if any(getattr(case.support, key) != getattr(own.support, key) for key in ("kind", "camber_m")) or (
-        case.foot != own.foot
-    ):
-        if case.foot != own.foot:  # the mesh has a line at its inner end
-            return None
+    if case.foot != own.foot:  # the mesh has a line at its inner end
+        return None
+    if any(getattr(case.support, key) != getattr(own.support, key) for key in ("kind", "camber_m")):
         support = build_support(case, container.mesh)
         if not np.array_equal(support.index, container.support.index):
             return None

@@ -13,13 +13,11 @@ from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.stepping.body import ROTATION
 from contact.stepping.links import LinkedBody
-from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from fem.case.case import Case, CaseError
 from fem.model.bodies import (
     body_of_row,
     contact_of_row,
-    corners_at_rest,
     floating_body,
     make_stack_state,
     measure_gaps,
@@ -33,7 +31,7 @@ from fem.model.bounce import bounce_of
 from fem.model.container import Container
 from fem.model.floor import slab_of
 from fem.model.links import lines_at, places_of_links, with_links
-from fem.model.support import Rolling, base_points, edge_factors, normal_penalty, steel_penalty
+from fem.model.support import base_points, edge_factors, normal_penalty, rolling_of, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.edges import shapes_at
@@ -76,7 +74,7 @@ def find_equilibrium(
         return _of_row(case, container, gravity)
     penalty = penalty or normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
-    base = springs.size
+    base, mass = springs.size, container.mesh.mass
     require_stiff_contact(case, container.mesh, float(springs.sum()))
     if not container.boxes:
         corners = container.nodes.size - base - len(case.links)
@@ -86,17 +84,21 @@ def find_equilibrium(
     body: Body
     try:
         if container.boxes:
-            contact = with_joints(case, contact, container.mesh.mass, steel_penalty(case, container.mesh))
-            contact = with_links(case, contact, [container.mesh.mass])
-            body, force, compression = _settled_stack(case, container, contact, gravity)
+            contact = with_joints(case, contact, mass, steel_penalty(case, container.mesh))
+            contact = with_links(case, contact, [mass])
+            penetration = mass * case.gravity_toward_floor / float(contact.normal_stiffness[:2].sum())
+            stack = stack_of(case, container, contact, POINT_TOLERANCE * penetration)
+            state = make_stack_state(stack)
+            corner_forces = settle(stack, own_stiffness(contact), state, gravity=gravity)
+            line = lines_at(case, state.point[len(state.point) - len(case.links) :], container.mesh.width)
+            body, force = _linked(stack, line), state.force
+            turns = state.boxes[:, ROTATION].tolist()
+            pressed = list(zip(container.boxes, corner_forces, turns, strict=True))
         else:
             stance = _stance(case, container, contact, gravity)
             body, force = _body(case, container, contact, stance), stance.force[: contact.cap.size]
-            contact = with_links(case, contact, [container.mesh.mass])
-            compression = 0.0
-            if case.solver.model != "rigid":
-                pressed = stance.with_points(container.nodes.size).force
-                compression = _strain(container, pressed, stance.rotation)
+            contact = with_links(case, contact, [mass])
+            pressed = [(container, stance.with_points(container.nodes.size).force, stance.rotation)]
     except SettlingError as error:
         slope = case.floor.slope_percent
         table = (
@@ -110,11 +112,12 @@ def find_equilibrium(
         require_bearing(case, container.mesh, (float(force[most, 1]), float(contact.cap[most])))
     else:
         require_bearing(case, container.mesh)
-    require_stiff_container(case, compression)
+    if case.solver.model != "rigid":
+        require_stiff_container(case, max(_strain(*each) for each in pressed))
     return Equilibrium(
         penalty=penalty,
         damping_ratio=float(contact.relaxation_time[0])
-        / relaxation_time(1.0, container.mesh.mass, float(springs[:base].sum())),
+        / relaxation_time(1.0, mass, float(springs[:base].sum())),
         gravity=gravity,
         contact=contact,
         body=body,
@@ -132,33 +135,18 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     contact = with_links(case, contact_of_row(case, [settled.contact for settled in row], masses), masses)
     bodies = [settled.body for settled in row if isinstance(settled.body, ModalBody)]
     body = body_of_row(case, bodies, container.row, contact)
-    upright = [
-        None if alone.initial.rotation_rad != 0.0 else settled.stance
-        for alone, settled in zip(case.row, row, strict=True)
-    ]
-    standing = corners_at_rest(body, upright)
+    boxes = body.body.boxes
+    standing = boxes.rest[:, None] + boxes.point  # corners, each in its own frame, (N, 4, 2) [m]
+    for b, (alone, settled) in enumerate(zip(case.row, row, strict=True)):
+        if settled.stance is not None and alone.initial.rotation_rad == 0.0:
+            turn = rotation_matrix(settled.stance.rotation)
+            standing[b] = np.asarray(settled.stance.centre) + boxes.point[b] @ turn.T
     measure_gaps(body, standing, own_stiffness(contact))
     place = np.zeros((contact.cap.size, 2))
     place_points(body.faces, standing.reshape(-1, 2), place)
     size = sum(mesh.width + mesh.height for mesh in meshes)
     line = lines_at(case, place[len(place) - len(case.links) :], size)
     return replace(row[0], contact=contact, body=_linked(body, line), stance=None, row=tuple(row))
-
-
-def _settled_stack(
-    case: Case, container: Container, contact: Contact, gravity: float
-) -> tuple[LooseStack | LinkedBody | FullStack, FloatArray, float]:
-    """A loose stack, its contact forces at rest (n, 2) [N] and the largest compressive strain of its boxes."""
-    penetration = container.mesh.mass * case.gravity_toward_floor / float(contact.normal_stiffness[:2].sum())
-    stack = stack_of(case, container, contact, POINT_TOLERANCE * penetration)
-    state = make_stack_state(stack)
-    forces = settle(stack, own_stiffness(contact), state, gravity=gravity)
-    strains = [
-        _strain(box, force, float(state.boxes[b, ROTATION]))
-        for b, (box, force) in enumerate(zip(container.boxes, forces, strict=True))
-    ]
-    line = lines_at(case, state.point[len(state.point) - len(case.links) :], container.mesh.width)
-    return _linked(stack, line), state.force, max(strains) if case.solver.model != "rigid" else 0.0
 
 
 def _linked(body: Any, line: FloatArray | None) -> Any:
@@ -199,9 +187,11 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
         ratio, cap = chosen.tangential_ratio, np.full(springs.size, math.inf)
         growth = 0.0
         relaxation = relaxation_time(chosen.damping_ratio, mesh.mass, 2.0 * corner)
-    rolling = Rolling.of(case, mesh)
-    if rolling is not None:  # the dashpots of the points resist slow rolling, too, but hardly a fast one
-        relaxation = min(relaxation, POINT_SHARE * rolling.time)
+    radius = lead = 0.0
+    if case.rolls:  # the dashpots of the points resist slow rolling, too, but hardly a fast one
+        radius, lead = rolling_of(case, mesh)
+        relaxation = min(relaxation, POINT_SHARE * lead)
+        lead -= relaxation
     base = camber.size
     places = container.elements.nodes[container.nodes[:base], 0]
     stiffness = np.concatenate(
@@ -222,8 +212,8 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
         regularisation_velocity=chosen.regularisation_velocity_m_s,
         force_scale=mesh.mass * case.gravity_m_s2,
         resolution=1e-15 * (mesh.width + mesh.height),
-        rolling_time=0.0 if rolling is None else rolling.time - relaxation,
-        rolling_radius=0.0 if rolling is None else rolling.radius,
+        rolling_time=lead,
+        rolling_radius=radius,
         rolling_reach=0.5 * case.effective_width * mesh.width,
     )
 
@@ -238,7 +228,21 @@ def _body(case: Case, container: Container, contact: Contact, stance: Stance) ->
     links = slice(len(nodes) - len(case.links), None)
     if case.links and case.solver.model != "full":  # it has points wherever they are asked for
         placed[links] = places_of_links(case)
-    line = lines_at(case, _at_rest(case, container, placed, stance)[links], mesh.width)
+    # gaps are measured from the points upright at rest; of one that starts tilted, from those of the undeformed
+    # container on a hard floor
+    at_rest = placed
+    if case.initial.rotation_rad == 0.0 and case.links:
+        turn = rotation_matrix(stance.rotation)
+        shape = placed - np.asarray(mesh.centroid)
+        if case.solver.model != "rigid":
+            own = (stance.with_points(len(placed)).force @ turn).ravel()
+            response = container.response.displacement
+            displacement = response[:, nodes]
+            if case.solver.model == "reduced":
+                displacement[:, links] = shapes_at(places_of_links(case), elements.nodes, response)
+            shape = shape + np.tensordot(own, displacement, axes=1)
+        at_rest = np.asarray(stance.centre) + shape @ turn.T
+    line = lines_at(case, at_rest[links], mesh.width)
     if case.solver.model == "full":
         body = FullBody(elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping)
         return _linked(body, line)
@@ -256,26 +260,6 @@ def _body(case: Case, container: Container, contact: Contact, stance: Stance) ->
         tolerance=POINT_TOLERANCE * penetration,
     )
     return _linked(floating, line)
-
-
-def _at_rest(case: Case, container: Container, placed: FloatArray, stance: Stance) -> FloatArray:
-    """Contact points (n, 2) of the container upright at rest: gaps are measured from them [m].
-
-    Of one that starts tilted, those of the undeformed container on a hard floor.
-    """
-    if case.initial.rotation_rad != 0.0 or not case.links:
-        return placed
-    turn = rotation_matrix(stance.rotation)
-    shape = placed - np.asarray(container.mesh.centroid)
-    if case.solver.model != "rigid":
-        own = (stance.with_points(len(placed)).force @ turn).ravel()
-        response = container.response.displacement
-        displacement = response[:, container.nodes]
-        if case.solver.model == "reduced":
-            at = places_of_links(case)
-            displacement[:, -len(at) :] = shapes_at(at, container.elements.nodes, response)
-        shape = shape + np.tensordot(own, displacement, axes=1)
-    return np.asarray(stance.centre) + shape @ turn.T
 
 
 def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:

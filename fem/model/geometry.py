@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 
 from fem.case.case import Case
-from fem.case.tables.boxes import Box
 from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, build_container_mesh, with_mass_beside
 from mesh.files import read_container_mesh, read_stack_mesh
@@ -21,7 +20,26 @@ def build_container(case: Case) -> ContainerMesh:
     """
     container, size, foot = case.container, case.solver.element_size_m, case.foot
     file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None
-    boxes = [_stacked(case, box) for box in case.stack]
+    post = container.post_section
+    boxes = [
+        StackedBox(
+            geometry=ContainerGeometry(
+                width=box.width,
+                height=box.height,
+                depth=container.depth_m,
+                section=Section(container.section),
+                wall=box.wall,
+                round=container.is_round,
+                post=None if post is None else CornerPost(width=post[0], wall=post[1]),
+            ),
+            fill=MassFill(
+                mass=box.mass, centroid_height=box.centroid, wall_density=container.wall_density_kg_m3
+            ),
+            axis=box.axis,
+            bottom=box.bottom,
+        )
+        for box in case.stack
+    ]
     bears = case.solver.model != "rigid" and (case.support.kind != "corners" or case.rolls)
     if container.box is None and not container.is_loose:
         lowest = boxes[0]
@@ -38,25 +56,6 @@ def build_container(case: Case) -> ContainerMesh:
         mesh = build_bolted_mesh(boxes, element_size=size, foot=foot, bears=bears)
     beside = container.eccentricity_m
     return with_mass_beside(mesh, beside) if beside else mesh
-
-
-def _stacked(case: Case, box: Box) -> StackedBox:
-    container = case.container
-    post = container.post_section
-    return StackedBox(
-        geometry=ContainerGeometry(
-            width=box.width,
-            height=box.height,
-            depth=container.depth_m,
-            section=Section(container.section),
-            wall=box.wall,
-            round=container.is_round,
-            post=None if post is None else CornerPost(width=post[0], wall=post[1]),
-        ),
-        fill=MassFill(mass=box.mass, centroid_height=box.centroid, wall_density=container.wall_density_kg_m3),
-        axis=box.axis,
-        bottom=box.bottom,
-    )
 
 
 def node_count(mesh: ContainerMesh, order: int) -> int:

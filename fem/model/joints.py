@@ -50,12 +50,37 @@ class Joints:
         """Momenta and positions at k instants, (k, J, 8), from coordinates and rates (k, n_d) and rotations (k,)."""
         out = np.empty((len(rotation), self.height.size, MOTION_COLUMNS))
         out[:, :, TURN] = rotation[:, None]
-        if self.full:
-            self._from_nodes(
-                position.reshape(len(rotation), -1, 2), velocity.reshape(len(rotation), -1, 2), out
-            )
-        else:
-            self._from_frame(position, velocity, out)
+        if not self.full:
+            cosine, sine = np.cos(position[:, 2:3]), np.sin(position[:, 2:3])
+            spin = velocity[:, 2][:, None]
+
+            def turned(vector: FloatArray) -> FloatArray:
+                x, z = vector[:, :, 0], vector[:, :, 1]
+                return np.stack([cosine * x + sine * z, cosine * z - sine * x], axis=2)
+
+            arm = self.centre + np.tensordot(position[:, 3:], self.mean_shape, axes=1)
+            rate = np.tensordot(velocity[:, 3:], self.mean_shape, axes=1)
+            rate[:, :, 0] += spin * arm[:, :, 1]
+            rate[:, :, 1] -= spin * arm[:, :, 0]
+            out[:, :, MOMENTUM] = self.mass[:, None] * (velocity[:, None, :2] + turned(rate))
+            out[:, :, SPIN] = spin * self.inertia + velocity[:, 3:] @ self.spin_shape
+            out[:, :, CENTRE] = position[:, None, :2] + turned(arm)
+            middle = self.middle + np.tensordot(position[:, 3:], self.middle_shape, axes=1)
+            out[:, :, JOINT] = position[:, None, :2] + turned(middle)
+            return out
+        for k in range(len(rotation)):
+            place, rate = position[k].reshape(-1, 2), velocity[k].reshape(-1, 2)
+            origin = place[self.ends].mean(axis=(0, 1))
+            arm = place - origin
+            for j, layer in enumerate(self.layers):
+                momentum, first = layer @ rate, layer @ arm
+                out[k, j, MOMENTUM], out[k, j, CENTRE] = momentum.sum(axis=0), first.sum(axis=0)
+                out[k, j, SPIN] = np.sum(arm[:, 1] * momentum[:, 0] - arm[:, 0] * momentum[:, 1])
+            out[k, :, : JOINT.start] = _summed_from_above(out[k, :, : JOINT.start])
+            out[k, :, CENTRE] /= self.mass[:, None]
+            out[k, :, SPIN] -= _moment(out[k, :, CENTRE], out[k, :, MOMENTUM])
+            out[k, :, CENTRE] += origin
+            out[k, :, JOINT] = place[self.ends].mean(axis=1)
         return out
 
     def forces(self, motion: FloatArray, interval: float) -> FloatArray:
@@ -89,38 +114,6 @@ class Joints:
         seen = motion.copy()
         seen[..., MOMENTUM] -= self.mass[:, None] * np.asarray(velocity)
         return seen
-
-    def _from_nodes(self, position: FloatArray, velocity: FloatArray, out: FloatArray) -> None:
-        for k, (place, rate) in enumerate(zip(position, velocity, strict=True)):
-            origin = place[self.ends].mean(axis=(0, 1))
-            arm = place - origin
-            for j, layer in enumerate(self.layers):
-                momentum, first = layer @ rate, layer @ arm
-                out[k, j, MOMENTUM], out[k, j, CENTRE] = momentum.sum(axis=0), first.sum(axis=0)
-                out[k, j, SPIN] = np.sum(arm[:, 1] * momentum[:, 0] - arm[:, 0] * momentum[:, 1])
-            out[k, :, : JOINT.start] = _summed_from_above(out[k, :, : JOINT.start])
-            out[k, :, CENTRE] /= self.mass[:, None]
-            out[k, :, SPIN] -= _moment(out[k, :, CENTRE], out[k, :, MOMENTUM])
-            out[k, :, CENTRE] += origin
-            out[k, :, JOINT] = place[self.ends].mean(axis=1)
-
-    def _from_frame(self, position: FloatArray, velocity: FloatArray, out: FloatArray) -> None:
-        cosine, sine = np.cos(position[:, 2:3]), np.sin(position[:, 2:3])
-        spin = velocity[:, 2][:, None]
-
-        def turned(vector: FloatArray) -> FloatArray:
-            x, z = vector[:, :, 0], vector[:, :, 1]
-            return np.stack([cosine * x + sine * z, cosine * z - sine * x], axis=2)
-
-        arm = self.centre + np.tensordot(position[:, 3:], self.mean_shape, axes=1)
-        rate = np.tensordot(velocity[:, 3:], self.mean_shape, axes=1)
-        rate[:, :, 0] += spin * arm[:, :, 1]
-        rate[:, :, 1] -= spin * arm[:, :, 0]
-        out[:, :, MOMENTUM] = self.mass[:, None] * (velocity[:, None, :2] + turned(rate))
-        out[:, :, SPIN] = spin * self.inertia + velocity[:, 3:] @ self.spin_shape
-        out[:, :, CENTRE] = position[:, None, :2] + turned(arm)
-        middle = self.middle + np.tensordot(position[:, 3:], self.middle_shape, axes=1)
-        out[:, :, JOINT] = position[:, None, :2] + turned(middle)
 
 
 def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:

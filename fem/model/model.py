@@ -4,7 +4,6 @@ The models `full`, `reduced` and `rigid` differ in the body alone.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -209,7 +208,14 @@ def build_model(
             position=coordinates if fields > 0.0 else 0,
             velocity=coordinates if fields > 0.0 else 0,
         ),
-        joints=_joints(case, container, static, row),
+        joints=make_joints(
+            [body.mesh.mass for body in container.bodies],
+            [body.mesh.inertia for body in container.bodies],
+            [body.mesh.width for body in container.bodies] if container.boxes else static.width,
+            [checks.slenderness_angle for checks in row or [static]],
+            impact_share=[each.contact.restitution_over_housner or 1.0 for each in case.row or [case]],
+            in_a_row=bool(container.row),
+        ),
         links=len(case.links) + len(case.neighbour),
         strained=strained,
         stress=_watched_stresses(case, container),
@@ -240,20 +246,6 @@ def _areas(case: Case, container: Container, equilibrium: Equilibrium) -> FloatA
     areas = np.full(points, slab.area)  # of loose boxes on one another as on the floor
     areas[:base] *= contact.cap[:base] / slab.cap
     return areas
-
-
-def _joints(case: Case, container: Container, static: StaticChecks, row: Sequence[StaticChecks]) -> Any:
-    """Records of what stands on the floor, and of the joints of a loose stack: `JOINT_RECORD`."""
-    meshes = [body.mesh for body in container.bodies]
-    shares = [alone.contact.restitution_over_housner or 1.0 for alone in case.row or [case]]
-    return make_joints(
-        [mesh.mass for mesh in meshes],
-        [mesh.inertia for mesh in meshes],
-        [mesh.width for mesh in meshes] if container.boxes else static.width,
-        [checks.slenderness_angle for checks in row or [static]],
-        impact_share=shares,
-        in_a_row=bool(container.row),
-    )
 
 
 def _watched_stresses(case: Case, container: Container) -> Stresses:

@@ -25,7 +25,6 @@ from fem.case.tables.problem import broken
 from fem.case.validation import problem_lines
 from fem.model.motion_summary import numbers_from_keys
 from fem.results.run_result import MotionResult
-from fem.runtime.arrays import FloatArray
 
 DRIFT = 0.1  #: over the largest velocity: velocity at the end of a table from which a drift is reported
 COARSE = 2.0 * math.sin(math.pi / 10.0)  #: change between samples over the amplitude, ten samples a period
@@ -93,7 +92,18 @@ def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
     begin, end = motion.span
     if isinstance(motion, HarmonicMotion):
         end = motion.end_time if math.isfinite(motion.end_time) else duration
-    peaks = np.abs(motion.evaluate(_extremes_of(motion, begin, end))).max(axis=1)
+    # instants that are dense enough for the peaks of displacement and velocity, within 0.01 %
+    if isinstance(motion, TableMotion):  # samples, and where acceleration and then velocity pass through zero
+        times = motion.times
+        for row in (2, 1):
+            before, after = (values := motion.evaluate(times)[row])[:-1], values[1:]
+            through = before * after < 0.0
+            share = before[through] / (before[through] - after[through])
+            times = np.unique(np.append(times, times[:-1][through] + share * np.diff(times)[through]))
+    else:
+        cycles = min(math.ceil((end - begin) / motion.time_scale), MOST_CYCLES)
+        times = np.linspace(begin, end, CYCLE_SAMPLES * max(cycles, 1) + 1)
+    peaks = np.abs(motion.evaluate(times)).max(axis=1)
     if isinstance(motion, PulseMotion):
         begin = 0.0  # its delay is a part of it
     covered = max(0.0, min(end, duration) - max(begin, 0.0)) / (end - begin)
@@ -113,20 +123,6 @@ def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
         covered=covered,
         peak_in_run_m_s2=motion.peak_within(duration),
     )
-
-
-def _extremes_of(motion: BaseMotion, begin: float, end: float) -> FloatArray:
-    """Instants that are dense enough for the peaks of displacement and velocity, within 0.01 % [s]."""
-    if isinstance(motion, TableMotion):  # samples, and where acceleration and then velocity pass through zero
-        times = motion.times
-        for row in (2, 1):
-            before, after = (values := motion.evaluate(times)[row])[:-1], values[1:]
-            through = before * after < 0.0
-            share = before[through] / (before[through] - after[through])
-            times = np.unique(np.append(times, times[:-1][through] + share * np.diff(times)[through]))
-        return times
-    cycles = min(math.ceil((end - begin) / motion.time_scale), MOST_CYCLES)
-    return np.linspace(begin, end, CYCLE_SAMPLES * max(cycles, 1) + 1)
 
 
 def peaks_in_run(
@@ -164,34 +160,8 @@ def motion_notes(motion: BaseMotion, table: MotionKey = "motion") -> list[str]:
     return notes
 
 
-def _plausible(motion: TableMotion, table: MotionKey) -> TableMotion:
-    if motion.times[-1] <= 0.0:
-        raise CaseError(
-            f"[{table}] file: its times end at {motion.times[-1]:g} s, and the run begins at t = 0; shift them"
-        )
-    peak = motion.peak_acceleration
-    if q.PEAK_ACCELERATION.allows(peak):
-        return motion
-    guess = (
-        q.PEAK_ACCELERATION.guess(peak) or "is its unit right, and are displacements sampled closely enough?"
-    )
-    raise CaseError(
-        f"[{table}] file: its accelerations reach {peak:.4g} m/s2, at most {q.PEAK_ACCELERATION.most:g} m/s2 are "
-        f"accepted; {guess}"
-    )
-
-
 def build_motion(case: Case, table: MotionKey = "motion") -> SingleMotion:
     """The motion [motion] of the case, or [vertical], positive upward; CaseError: its file, or an impossible motion."""
-    try:
-        return _build(case, table)
-    except CaseError:
-        raise
-    except ValueError as error:
-        raise CaseError(f"[{table}] {error}") from error
-
-
-def _build(case: Case, table: MotionKey) -> SingleMotion:
     motion = case.vertical if table == "vertical" else case.motion
 
     def given(key: str) -> Any:
@@ -201,28 +171,46 @@ def _build(case: Case, table: MotionKey) -> SingleMotion:
             raise CaseError(f"[{table}] {key} is missing")
         return value
 
-    match motion.kind:
-        case "none":
-            return NoMotion()
-        case "harmonic":
-            return HarmonicMotion(
-                amplitude=motion.amplitude,
-                angular_frequency=motion.angular_frequency,
-                duration=longest_time(case),
-                phase=motion.phase_rad + (math.pi if motion.factor < 0.0 else 0.0),
-                ramp_cycles=motion.ramp_cycles,
-                cycles=motion.cycles,
-            )
-        case "pulse":
-            return PulseMotion(
-                shape=given("shape"),
-                acceleration=motion.factor * given("peak_acceleration_m_s2"),
-                pulse=given("pulse_s"),
-                delay=motion.delay_s,
-            )
-        case "table":
-            made = recorded_motion(case, table).motion
-            return _plausible(
-                TableMotion(times=made.times, values=made.values, quantity=motion.quantity), table
-            )
-    assert_never(motion.kind)
+    try:
+        match motion.kind:
+            case "none":
+                return NoMotion()
+            case "harmonic":
+                return HarmonicMotion(
+                    amplitude=motion.amplitude,
+                    angular_frequency=motion.angular_frequency,
+                    duration=longest_time(case),
+                    phase=motion.phase_rad + (math.pi if motion.factor < 0.0 else 0.0),
+                    ramp_cycles=motion.ramp_cycles,
+                    cycles=motion.cycles,
+                )
+            case "pulse":
+                return PulseMotion(
+                    shape=given("shape"),
+                    acceleration=motion.factor * given("peak_acceleration_m_s2"),
+                    pulse=given("pulse_s"),
+                    delay=motion.delay_s,
+                )
+            case "table":
+                made = recorded_motion(case, table).motion
+                recorded = TableMotion(times=made.times, values=made.values, quantity=motion.quantity)
+                if recorded.times[-1] <= 0.0:
+                    raise CaseError(
+                        f"[{table}] file: its times end at {recorded.times[-1]:g} s, and the run begins at t = 0; "
+                        "shift them"
+                    )
+                limits, peak = q.PEAK_ACCELERATION, recorded.peak_acceleration
+                if limits.allows(peak):
+                    return recorded
+                guess = (
+                    limits.guess(peak) or "is its unit right, and are displacements sampled closely enough?"
+                )
+                raise CaseError(
+                    f"[{table}] file: its accelerations reach {peak:.4g} m/s2, at most {limits.most:g} m/s2 are "
+                    f"accepted; {guess}"
+                )
+        assert_never(motion.kind)
+    except CaseError:
+        raise
+    except ValueError as error:
+        raise CaseError(f"[{table}] {error}") from error

@@ -79,12 +79,7 @@ def require_loss(case: Case, static: StaticChecks) -> None:
 
 
 def apparent_restitution(
-    *,
-    support: str,
-    foot_over_width: float | None,
-    slenderness: float,
-    damping_ratio: float,
-    housner: float,
+    *, support: str, foot_over_width: float | None, slenderness: float, damping_ratio: float, housner: float
 ) -> float | None:
     """Restitution of a rigid container on its support; None outside the table.
 

@@ -149,9 +149,8 @@ class StaticChecks:
     peak_vertical_acceleration: float | None  #: of the floor in this run [m/s2]
     by_code: CodeChecks | None  #: None where the case has no [static]
     slope: float = 0.0  #: size of the angle of the floor with the horizontal [rad]
-    wind: ActionCheck | None = (
-        None  #: on a level floor, with 0.9 of the weight; None where the case has no [wind]
-    )
+    #: on a level floor, with 0.9 of the weight; None where the case has no [wind]
+    wind: ActionCheck | None = None
 
     @property
     def overturning_energy(self) -> float:

@@ -95,37 +95,12 @@ def largest_step_of(
     frames = INTERVALS[0] if output.fields_s == "auto" else output.fields_s
     interval = min(output.history_s, frames or math.inf)
     largest = min(largest, duration, MOST_SAMPLES_A_STEP * interval)
-    return largest, _apart(sorted(ends), duration, SMALLEST_SHARE * largest)
-
-
-def _apart(instants: list[float], end: float, least: float) -> FloatArray:
-    """The instants (rising, before `end`) and the end, without those closer than `least` to their neighbour or the end.
-
-    The inertia over the square of a step below the smallest would overflow or be noise.
-    """
-    if np.diff([0.0, *instants, end]).min() >= least:
-        return np.array([*instants, end])
-    kept = [0.0]
-    for instant in instants:
-        if instant - kept[-1] >= least and end - instant >= least:
+    # without those too close to one another: the inertia over the square of so short a step would overflow or be noise
+    kept, least = [0.0], SMALLEST_SHARE * largest
+    for instant in sorted(ends):
+        if instant - kept[-1] >= least and duration - instant >= least:
             kept.append(instant)
-    return np.array([*kept[1:], end])
-
-
-def _struck_mass(case: Case, container: Container) -> float:
-    """Effective mass of a corner in the first instant of an impact [kg]; of a loose stack the least of all boxes.
-
-    For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own.
-    """
-    if case.solver.model == "full":
-        return float(container.elements.nodal_mass[container.nodes[0]])
-    masses = []
-    for body in container.bodies:
-        for corner in body.nodes if container.boxes else body.nodes[:1]:
-            arm = float(body.elements.nodes[corner, 0] - body.mesh.centroid[0])
-            elastic = float(np.sum(body.basis.shapes[:, corner, 1] ** 2))
-            masses.append(1.0 / (1.0 / body.mesh.mass + arm * arm / body.mesh.inertia + elastic))
-    return min(masses)
+    return largest, np.array([*kept[1:], duration])
 
 
 def control_of(
@@ -157,7 +132,17 @@ def control_of(
     spring, dashpots = float(contact.normal_stiffness[0]), contact.normal_stiffness * contact.relaxation_time
     joints = dashpots[: dashpots.size - len(case.links)]
     dashpot = float(joints.max() if container.boxes else dashpots[0])
-    struck = _struck_mass(case, container)
+    # effective mass of a corner in the first instant of an impact, of several bodies the least: of a rigid container
+    # that of the whole, rotating body; of an elastic one little more than the corner's own
+    masses = []
+    for body in container.bodies:
+        for corner in body.nodes if container.boxes else body.nodes[:1]:
+            arm = float(body.elements.nodes[corner, 0] - body.mesh.centroid[0])
+            elastic = float(np.sum(body.basis.shapes[:, corner, 1] ** 2))
+            masses.append(1.0 / (1.0 / body.mesh.mass + arm * arm / body.mesh.inertia + elastic))
+    struck = min(masses)
+    if case.solver.model == "full":
+        struck = float(container.elements.nodal_mass[container.nodes[0]])
     # Time constants of a mass on the dashpot and on the spring of a corner.
     closing = CLOSING_SHARE_OF_TIME / (dashpot / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass))
     return Control(

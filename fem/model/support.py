@@ -12,7 +12,6 @@ less there.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,7 +28,6 @@ LARGEST = 2.9  #: rocking stiffness over that of even springs; 3 takes all of th
 MOST_AT_REST = 0.5  #: of its strength that the floor carries at the edges at rest
 WHOLE_WIDTH = 0.99  #: share of the width of the base from which two patches are all of it
 LEAST_POINTS = 5  #: of a base that rolls: fewer are a polygon of two or three sides
-#: of a casting at most: the cost of a step grows with their square; 41 turn a stack 3 % further, see README.md
 
 
 def build_support(case: Case, mesh: ContainerMesh) -> Support:
@@ -38,13 +36,7 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
     feet = (0.0, 0.0) if case.foot is None else mesh.elevation.foot_widths(case.foot)
     kind = "flat" if case.rolls else chosen.kind
     try:
-        level = choose_support(
-            kind,
-            x,
-            depth=case.container.depth_m,
-            order=case.solver.order,
-            feet=feet,
-        )
+        level = choose_support(kind, x, depth=case.container.depth_m, order=case.solver.order, feet=feet)
     except ValueError as error:
         raise CaseError(str(error)) from error
     if chosen.camber_m == 0.0:
@@ -57,36 +49,25 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
     return cambered(level, x[level.index], chosen.camber_m)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Rolling:
-    """Small rocking on a base that is cambered from edge to edge: it rolls on an arc."""
+def rolling_of(case: Case, mesh: ContainerMesh) -> tuple[float, float]:
+    """Radius b^2/(2 d) of a base that rolls on an arc [m], and the time by which the resultant is ahead [s].
 
-    radius: float  #: of the base, b^2/(2 d) [m]
-    time: float  #: by which the resultant is ahead of the place that touches, of the damping ratio [s]
-
-    @classmethod
-    def of(cls, case: Case, mesh: ContainerMesh) -> "Rolling | None":
-        """That of a case; None where the base does not roll.
-
-        A body on an arc of radius R swings with I theta'' + M g (R - z_c) theta = 0, I about the place that touches. A
-        resultant that is ahead by the time tau adds M g R tau theta', so a damping ratio zeta of these small swings is
-        tau = 2 zeta (R - z_c)/(R omega). CaseError: the base is so round that the container does not stand on it.
-        """
-        support, height = case.support, mesh.centroid[1]
-        if not case.rolls:
-            return None
-        width = case.effective_width * mesh.width
-        radius = 0.125 * width**2 / support.camber_m
-        if radius <= height:
-            raise CaseError(
-                f"[support] camber_m = {support.camber_m:g} m: the base is an arc of {radius:.3g} m under a mass "
-                f"centre at {height:.3g} m, on which the container does not stand; it must be less than "
-                f"{0.125 * width**2 / height:.3g} m"
-            )
-        inertia = mesh.inertia + mesh.mass * height**2
-        frequency = math.sqrt(mesh.mass * case.gravity_m_s2 * (radius - height) / inertia)
-        lead = 2.0 * support.rocking_damping_ratio * (radius - height) / (radius * frequency)
-        return cls(radius=radius, time=lead)
+    A body on an arc of radius R swings with I theta'' + M g (R - z_c) theta = 0, I about the place that touches. A
+    resultant that is ahead by the time tau adds M g R tau theta', so a damping ratio zeta of these small swings is
+    tau = 2 zeta (R - z_c)/(R omega). CaseError: the base is so round that the container does not stand on it.
+    """
+    support, height = case.support, mesh.centroid[1]
+    width = case.effective_width * mesh.width
+    radius = 0.125 * width**2 / support.camber_m
+    if radius <= height:
+        raise CaseError(
+            f"[support] camber_m = {support.camber_m:g} m: the base is an arc of {radius:.3g} m under a mass "
+            f"centre at {height:.3g} m, on which the container does not stand; it must be less than "
+            f"{0.125 * width**2 / height:.3g} m"
+        )
+    inertia = mesh.inertia + mesh.mass * height**2
+    frequency = math.sqrt(mesh.mass * case.gravity_m_s2 * (radius - height) / inertia)
+    return radius, 2.0 * support.rocking_damping_ratio * (radius - height) / (radius * frequency)
 
 
 def _rolling_penalty(case: Case, mesh: ContainerMesh) -> float:
@@ -146,25 +127,18 @@ def base_points(case: Case, mesh: ContainerMesh, place: FloatArray, count: int) 
     return placed
 
 
-def rocking_ratio(case: Case) -> float | None:
-    """Rocking stiffness of the half-space over that of springs shared evenly; None where no flat base bears on one."""
-    support, floor = case.support, case.floor
-    if not floor.is_slab or support.kind != "flat" or support.camber_m > 0.0:
-        return None
-    half, across = corner_patch(case)
-    along, below = 2.0 * half, half_space_of(case)
-    if along < WHOLE_WIDTH * case.stack[0].width:
-        return None
-    return below.rocking_stiffness(along, across) / (
-        below.vertical_stiffness(along, across) * along**2 / 12.0
-    )
-
-
 def edge_factors(case: Case, support: Support, x: FloatArray) -> FloatArray:
     """Factors (n,) on the springs of the points of a base at x (n,) [m], shared by their lengths."""
-    wanted = rocking_ratio(case)
-    if wanted is None:
+    if not case.floor.is_slab or case.support.kind != "flat" or case.support.camber_m > 0.0:
         return np.ones(x.size)
+    (half_patch, across), below = corner_patch(case), half_space_of(case)
+    along = 2.0 * half_patch
+    if along < WHOLE_WIDTH * case.stack[0].width:
+        return np.ones(x.size)
+    # rocking stiffness of the half-space over that of springs shared evenly
+    wanted = below.rocking_stiffness(along, across) / (
+        below.vertical_stiffness(along, across) * along**2 / 12.0
+    )
     ratio, half, lengths = min(wanted, LARGEST), 0.5 * float(x[-1] - x[0]), support.length
     # from farther out than the radius wanted, so that the inside pushes, too; a point may have a part of it, so that
     # its place does not depend on where the nodes are
