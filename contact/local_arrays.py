@@ -55,29 +55,13 @@ def _cut(numbers: types.Array, begin: types.IntegerLiteral, *sizes: types.Intege
     return kind(numbers, begin, *sizes), cut
 
 
-def _row(typing: Any, size: Any) -> Any:
-    return _made(types.float64, size)
-
-
-def _rows(typing: Any, rows: Any, columns: Any) -> Any:
-    return _made(types.float64, rows, columns)
-
-
-def _counts(typing: Any, size: Any) -> Any:
-    return _made(types.int64, size)
-
-
-def _part_row(typing: Any, numbers: Any, begin: Any, size: Any) -> Any:
-    return _cut(numbers, begin, size)
-
-
-def _part_rows(typing: Any, numbers: Any, begin: Any, rows: Any, columns: Any) -> Any:
-    return _cut(numbers, begin, rows, columns)
-
-
 _of_constants: Any = intrinsic(prefer_literal=True)
-local_row: Any = _of_constants(_row)  #: an array (size,) of zeros
-local_rows: Any = _of_constants(_rows)  #: an array (rows, columns) of zeros
-local_counts: Any = _of_constants(_counts)  #: an array (size,) of whole numbers, zeros
-part_row: Any = _of_constants(_part_row)  #: the part (size,) of an array (n,) from `begin` on
-part_rows: Any = _of_constants(_part_rows)  #: the same as rows (rows, columns)
+#: an array (size,) of zeros; (rows, columns); (size,) of whole numbers
+local_row: Any = _of_constants(lambda typing, size: _made(types.float64, size))
+local_rows: Any = _of_constants(lambda typing, rows, columns: _made(types.float64, rows, columns))
+local_counts: Any = _of_constants(lambda typing, size: _made(types.int64, size))
+#: the part (size,) of an array (n,) from `begin` on; the same as rows (rows, columns)
+part_row: Any = _of_constants(lambda typing, numbers, begin, size: _cut(numbers, begin, size))
+part_rows: Any = _of_constants(
+    lambda typing, numbers, begin, rows, columns: _cut(numbers, begin, rows, columns)
+)

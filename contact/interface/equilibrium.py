@@ -10,8 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact.arrays import BoolArray, FloatArray
-from contact.interface.contact_points import points_of_joint
-from contact.interface.faces import CORNERS, Faces, linearise_points
+from contact.interface.faces import CORNERS, Faces, linearise_points, points_of_joint
 
 #: contact force over the weight below which a point of the settled base counts as open
 ROUNDING = 1e-12
@@ -57,28 +56,6 @@ class Stance:
         return replace(self, force=force)
 
 
-class _Changes:
-    """Which points change between carrying and open, step by step, until none is in tension or below the floor.
-
-    All that are wrong at once; where that does not make them fewer, one at a time, the deepest first: the points of a
-    cambered base may otherwise alternate for ever.
-    """
-
-    def __init__(self) -> None:
-        self.fewest: float = math.inf
-        self.spare = SPARE
-
-    def of(self, wrong: BoolArray, carrying: BoolArray, gap: FloatArray, normal: FloatArray) -> BoolArray:
-        """Those that change, of the points that are wrong; each argument (n,)."""
-        count = int(np.count_nonzero(wrong))
-        self.fewest, self.spare = (count, SPARE) if count < self.fewest else (self.fewest, self.spare - 1)
-        if self.spare >= 0:
-            return wrong
-        below = (wrong & ~carrying).any()
-        worst = np.argmin(np.where(carrying, np.inf, gap) if below else normal)
-        return np.arange(wrong.size) == worst
-
-
 def standing(
     *,
     weight: float,
@@ -102,53 +79,27 @@ def standing(
         SettlingError: the weight acts outside the supporting points.
     """
     n = point.shape[0]
-    vertical = compliance[1::2, 1::2] - shear_ratio * compliance[1::2, 0::2]
     carrying, rounding = np.ones(n, dtype=bool), ROUNDING
     if camber.any():  # the load is on few of many points: begin with those beside the mass centre
         beside = np.searchsorted(point[:, 0], 0.0, side="right")
         carrying, rounding = np.isin(np.arange(n), (beside - 1, beside)), ROUNDING_OF_CAMBER
-    changes = _Changes()
-    for _ in range(MOST_STEPS * n):
-        chosen = np.flatnonzero(carrying)
-        m = chosen.size
-        # Unknowns: normal forces, rise of the centroid above its place in the undeformed container, rotation.
-        system = np.zeros((m + 2, m + 2))
-        system[:m, :m] = vertical[np.ix_(chosen, chosen)] + np.diag(1.0 / normal_stiffness[chosen])
-        system[:m, m] = 1.0
-        system[:m, m + 1] = -point[chosen, 0]
-        system[m:, :m] = system[:m, m:].T
-        system[m + 1, :m] -= shear_ratio * point[chosen, 1]
-        right = np.zeros(m + 2)
-        right[:m] = -(point[chosen, 1] + camber[chosen] + centroid[1])
-        right[m] = weight
-        try:
-            solution = np.linalg.solve(system, right)
-        except np.linalg.LinAlgError:
-            break
-        normal = np.zeros(n)
-        normal[chosen] = solution[:m]
-        gap = (
-            point[:, 1]
-            + camber
-            + centroid[1]
-            + solution[m]
-            - solution[m + 1] * point[:, 0]
-            + vertical @ normal
-        )
-        # A point that just touches keeps its state within rounding; it would otherwise change state for ever.
-        wrong = np.where(carrying, normal < -rounding * weight, gap < -rounding * weight / normal_stiffness)
-        if not wrong.any():
-            normal = np.maximum(normal, 0.0)
-            force = np.column_stack([np.zeros(n) - shear_ratio * normal, normal])
-            return Stance(
-                centre=(centroid[0], centroid[1] + solution[m]),
-                rotation=float(solution[m + 1]),
-                velocity=(0.0, 0.0),
-                angular_velocity=0.0,
-                force=force,
-            )
-        carrying ^= changes.of(wrong, carrying, gap, normal)
-    raise SettlingError("the weight of the container acts outside its supporting points")
+    normal, (rise, rotation) = pressed(
+        weight,
+        point[:, 1] + camber + centroid[1],
+        compliance[1::2, 1::2] - shear_ratio * compliance[1::2, 0::2],
+        normal_stiffness,
+        lever=(-point[:, 0], -point[:, 0] - shear_ratio * point[:, 1]),
+        carrying=carrying,
+        rounding=rounding,
+        refusal="the weight of the container acts outside its supporting points",
+    )
+    return Stance(
+        centre=(centroid[0], centroid[1] + rise),
+        rotation=float(rotation),
+        velocity=(0.0, 0.0),
+        angular_velocity=0.0,
+        force=np.column_stack([np.zeros(n) - shear_ratio * normal, normal]),
+    )
 
 
 def tilted(
@@ -207,7 +158,7 @@ def tilted(
             arm, before = share @ arms, share
             force = held(arm)
             vertical = own[1::2, 1::2] + force[0] / force[1] * own[1::2, 0::2]
-            normal, rise = pressed(float(force[1]), arms[:, 1] + camber, vertical, normal_stiffness)
+            normal, (rise,) = pressed(float(force[1]), arms[:, 1] + camber, vertical, normal_stiffness)
             share = normal / force[1]
             if np.abs(share - before).max() <= ROUNDING_OF_CAMBER:
                 break
@@ -215,7 +166,7 @@ def tilted(
             raise SettlingError("the tilted base does not settle on its points")
         forces[:] = share[:, None] * force
         place = corner_x + share @ (point[:, 0] - point[corner, 0])  # on the floor, after it has rolled there
-        centre = place - share @ (arms[:, 0] + (own @ forces.ravel())[0::2]), rise
+        centre = place - share @ (arms[:, 0] + (own @ forces.ravel())[0::2]), float(rise)
     else:
         x, z = point[corner]
         arm = np.array([cosine * x + sine * z, -sine * x + cosine * z])
@@ -234,30 +185,62 @@ def tilted(
 
 
 def pressed(
-    load: float, height: FloatArray, compliance: FloatArray, stiffness: FloatArray
-) -> tuple[FloatArray, float]:
-    """Normal forces (n,) [N] on unilateral springs under a load that moves up and down alone, and its rise [m].
+    load: float,
+    height: FloatArray,
+    compliance: FloatArray,
+    stiffness: FloatArray,
+    *,
+    lever: tuple[FloatArray, FloatArray] | None = None,
+    carrying: BoolArray | None = None,
+    rounding: float = ROUNDING_OF_CAMBER,
+    refusal: str = "the tilted base does not settle on its points",
+) -> tuple[FloatArray, FloatArray]:
+    """Normal forces (n,) [N] on unilateral springs under a load, and its rise [m], and rotation [rad].
 
-    `height`: (n,) of the points above the load's own place [m]; `compliance`: (n, n) elastic [m/N].
+    Points change between carrying and open until none is in tension or below the floor: all that are wrong at once;
+    where that does not make them fewer, one at a time, the deepest first, for the points of a cambered base may
+    otherwise alternate for ever.
+
+    Args:
+        height: (n,) of the points above the load's own place [m]; compliance: (n, n) elastic [m/N].
+        lever: (n,) rise of the points by a rotation, and moments of their forces [m]; None: the load does not turn.
+        carrying: (n,) the points to begin with; None: the lowest.
+        rounding: force over the load within which a point that just touches keeps its state.
     """
-    carrying, changes = height <= height.min(), _Changes()
-    for _ in range(MOST_STEPS * height.size):
+    n = height.size
+    alone = np.ones((1, n))
+    rises, moments = (alone, alone) if lever is None else (np.vstack([alone, row]) for row in lever)
+    carrying = height <= height.min() if carrying is None else carrying
+    fewest: float = math.inf
+    spare = SPARE
+    for _ in range(MOST_STEPS * n):
         chosen = np.flatnonzero(carrying)
-        m = chosen.size
-        system = np.ones((m + 1, m + 1))
+        m, free = chosen.size, len(rises)
+        # Unknowns: normal forces, and how the load moves.
+        system, right = np.zeros((m + free, m + free)), np.zeros(m + free)
         system[:m, :m] = compliance[np.ix_(chosen, chosen)] + np.diag(1.0 / stiffness[chosen])
-        system[m, m] = 0.0
-        solution = np.linalg.solve(system, np.append(-height[chosen], load))
-        normal = np.zeros(height.size)
+        system[:m, m:], system[m:, :m] = rises[:, chosen].T, moments[:, chosen]
+        right[:m], right[m] = -height[chosen], load
+        try:
+            solution = np.linalg.solve(system, right)
+        except np.linalg.LinAlgError:
+            break
+        normal, gap = np.zeros(n), height
         normal[chosen] = solution[:m]
-        gap = height + solution[m] + compliance @ normal
-        wrong = np.where(
-            carrying, normal < -ROUNDING_OF_CAMBER * load, gap < -ROUNDING_OF_CAMBER * load / stiffness
-        )
+        for rise, moved in zip(rises, solution[m:], strict=True):
+            gap = gap + rise * moved
+        gap = gap + compliance @ normal
+        # A point that just touches would change its state for ever.
+        wrong = np.where(carrying, normal < -rounding * load, gap < -rounding * load / stiffness)
         if not wrong.any():
-            return np.maximum(normal, 0.0), float(solution[m])
-        carrying = carrying ^ changes.of(wrong, carrying, gap, normal)
-    raise SettlingError("the tilted base does not settle on its points")
+            return np.maximum(normal, 0.0), np.asarray(solution[m:], dtype=float)
+        count = int(np.count_nonzero(wrong))
+        fewest, spare = (count, SPARE) if count < fewest else (fewest, spare - 1)
+        if spare < 0:
+            below = (wrong & ~carrying).any()
+            wrong = np.arange(n) == np.argmin(np.where(carrying, np.inf, gap) if below else normal)
+        carrying = carrying ^ wrong
+    raise SettlingError(refusal)
 
 
 @dataclass(frozen=True, kw_only=True)

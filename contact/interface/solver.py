@@ -175,7 +175,7 @@ def stick_where_turned(iteration: int, work: Workspace) -> bool:
     """
     turned = False
     for i in range(work.law.shape[0]):
-        side = int(np.sign(work.excess[i, 0]))
+        side = int(work.excess[i, 0] > 0.0) - int(work.excess[i, 0] < 0.0)
         if iteration > 0 and side * work.side[i] < 0:
             work.law[i, 0] += work.excess[i, 0]
             work.slope[i, 0], work.slope[i, 1] = work.excess[i, 1], 0.0

@@ -96,7 +96,10 @@ def cambered(support: Support, x: FloatArray, camber: float) -> Support:
     """
     edge = float(x[-1])
     curvature = 2.0 * camber / edge**2
-    kept = _kept(x)
+    usual = float(np.median(np.diff(x)))
+    kept = (x[-1] - np.abs(x) >= LEAST_DISTANCE * usual) | (
+        np.abs(x) >= x[-1]
+    )  # those that do not crowd at the edge
     x, index = x[kept], support.index[kept]
     distance = np.diff(x)
     touching = distance < 2.0 * float(np.median(distance))  # not across the gap between feet
@@ -104,14 +107,14 @@ def cambered(support: Support, x: FloatArray, camber: float) -> Support:
     system = np.zeros((pairs.size, x.size))
     system[np.arange(pairs.size), pairs] = system[np.arange(pairs.size), pairs + 1] = 1.0
     beside = np.where(touching, distance, np.median(distance)) ** 2
-    usual = 0.25 * curvature * (np.append(beside[0], beside) + np.append(beside, beside[-1]))
+    usual_sinking = 0.25 * curvature * (np.append(beside[0], beside) + np.append(beside, beside[-1]))
     root = np.sqrt(EVENNESS)
     sinking = np.linalg.lstsq(
         np.vstack([system, root * np.eye(x.size)]),
-        np.append(curvature * distance[pairs] ** 2, root * usual),
+        np.append(curvature * distance[pairs] ** 2, root * usual_sinking),
         rcond=None,
     )[0]
-    sinking = np.maximum(0.5 * (sinking + sinking[::-1]), LEAST_DISTANCE**2 * 0.5 * usual)
+    sinking = np.maximum(0.5 * (sinking + sinking[::-1]), LEAST_DISTANCE**2 * 0.5 * usual_sinking)
     height = 0.5 * curvature * x**2
     for side in (1.0, -1.0):  # outwards from the innermost point
         order = np.flatnonzero(side * x >= 0.0)[:: int(side)]
@@ -128,10 +131,3 @@ def cambered(support: Support, x: FloatArray, camber: float) -> Support:
         camber=height - height.min(),
         sinking=sinking,
     )
-
-
-def _kept(x: FloatArray) -> IntArray:
-    """The points (n,) without those that crowd at the edge."""
-    usual = float(np.median(np.diff(x)))
-    crowded = (x[-1] - np.abs(x) < LEAST_DISTANCE * usual) & (np.abs(x) < x[-1])
-    return np.flatnonzero(~crowded)

@@ -14,23 +14,16 @@ from typing import Literal
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.motion.kernel import (
-    HALF_SINE,
-    HARMONIC,
-    PART,
-    PIECEWISE,
-    RECTANGULAR,
-    SINE,
-    SUM,
-    UNIFORM,
-    FloorMotion,
-    as_floor_motion,
-    floor_history,
-)
+from contact.motion import kernel
+from contact.motion.kernel import FloorMotion, as_floor_motion, floor_history
 from contact.motion.table import TableMotion
 
 PulseShape = Literal["rectangular", "half-sine", "sine"]
-PULSE_KINDS: dict[str, int] = {"rectangular": RECTANGULAR, "half-sine": HALF_SINE, "sine": SINE}
+PULSE_KINDS: dict[str, int] = {
+    "rectangular": kernel.RECTANGULAR,
+    "half-sine": kernel.HALF_SINE,
+    "sine": kernel.SINE,
+}
 
 # The taper raises the peak above A Omega^2 by about 57/(2 pi n)^3 for n cycles of ramp, a quarter of a cycle from the
 # plateau (1.2 at n = 1), so the search may stop a few cycles into the ramp.
@@ -43,19 +36,17 @@ class NoMotion:
     """A floor at rest."""
 
     def compiled(self) -> FloorMotion:
-        return as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))
+        return as_floor_motion(kernel.UNIFORM, (0.0, 0.0, 0.0))
 
     def evaluate(self, times: FloatArray) -> FloatArray:
         return floor_history(self.compiled(), times)
 
     @property
     def peak_acceleration(self) -> float:
-        """Largest |acceleration| [m/s2]."""
         return 0.0
 
     @property
     def break_times(self) -> FloatArray:
-        """Instants where the acceleration jumps or its formula changes: none, shape (0,) [s]."""
         return np.empty(0)
 
     @property
@@ -69,7 +60,6 @@ class NoMotion:
         return 0.0, math.inf
 
     def peak_within(self, duration: float) -> float:
-        """Largest |acceleration| up to `duration`, the end of the run [m/s2]."""
         return 0.0
 
 
@@ -152,7 +142,7 @@ class HarmonicMotion:
 
     def compiled(self) -> FloorMotion:
         return as_floor_motion(
-            HARMONIC, (self.amplitude, self.angular_frequency, self.phase, self.ramp, self.end_time)
+            kernel.HARMONIC, (self.amplitude, self.angular_frequency, self.phase, self.ramp, self.end_time)
         )
 
     def evaluate(self, times: FloatArray) -> FloatArray:
@@ -297,16 +287,22 @@ class SumOfMotions:
     @cached_property
     def _compiled(self) -> FloorMotion:
         own = [part.compiled() for part in self.parts]
-        tables = [data for data in own if data.kind == PIECEWISE]
+        tables = [data for data in own if data.kind == kernel.PIECEWISE]
         numbers = [
             number
             for data in own
-            if data.kind != PIECEWISE
-            for number in (float(data.kind), *data.parameters, *[0.0] * (PART - 1 - data.parameters.size))
+            if data.kind != kernel.PIECEWISE
+            for number in (
+                float(data.kind),
+                *data.parameters,
+                *[0.0] * (kernel.PART - 1 - data.parameters.size),
+            )
         ]
         knots = np.unique(np.concatenate([np.empty(0), *(data.breaks for data in tables)]))
         rows = sum((_rows_at(data, knots) for data in tables), start=np.zeros((knots.size + 1, 4)))
-        return as_floor_motion(SUM if numbers else PIECEWISE, tuple(numbers), breaks=knots, coefficients=rows)
+        return as_floor_motion(
+            kernel.SUM if numbers else kernel.PIECEWISE, tuple(numbers), breaks=knots, coefficients=rows
+        )
 
     def evaluate(self, times: FloatArray) -> FloatArray:
         return floor_history(self.compiled(), times)

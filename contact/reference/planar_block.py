@@ -16,6 +16,7 @@ rock, and slide-rock rigid-body modes, ibid. 122 (1996).
 import math
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -26,9 +27,7 @@ from contact.reference.event_driven import (
     REST_ENERGY,
     EventError,
     Guard,
-    Passage,
     Piece,
-    Rate,
     flow,
     sample,
     turning_point,
@@ -55,15 +54,6 @@ class PlanarState:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlanarTransition:
-    """A state is entered."""
-
-    time: float  #: [s]
-    state: PlanarState
-    reason: str  #: the event that led to it
-
-
-@dataclass(frozen=True, kw_only=True)
 class PlanarImpact:
     """A corner meets the floor and becomes the pivot; velocities after it are zero where the block comes to rest."""
 
@@ -78,22 +68,21 @@ class PlanarImpact:
 class PlanarMotion:
     """Motion of a planar block."""
 
-    transitions: tuple[PlanarTransition, ...]
+    states: tuple[PlanarState, ...]  #: entered one after the other; numbered by the regimes of the pieces
     impacts: tuple[PlanarImpact, ...]
     end: float  #: duration asked for, or when it overturned or left the model [s]
     largest_rotation: float  #: largest |rotation| [rad]
     pieces: tuple[Piece, ...]
-    states: tuple[PlanarState, ...]  #: numbered by the regimes of the pieces
 
     @property
     def modes(self) -> frozenset[PlanarMode]:
         """Every mode seen."""
-        return frozenset(transition.state.mode for transition in self.transitions)
+        return frozenset(state.mode for state in self.states)
 
     @property
     def outcome(self) -> PlanarMode:
         """Overturned or outside the model if it ended so, else the most general mode."""
-        last = self.transitions[-1].state.mode
+        last = self.states[-1].mode
         if last in (PlanarMode.OVERTURNED, PlanarMode.OUTSIDE):
             return last
         if PlanarMode.SLIDE_ROCK in self.modes or {PlanarMode.SLIDE, PlanarMode.ROCK} <= self.modes:
@@ -289,7 +278,14 @@ class PlanarBlock:
     mu_kinetic: float  #: [-]
 
     def __post_init__(self) -> None:
-        check_friction(self.mu_static, self.mu_kinetic)
+        for name, value in (("mu_static", self.mu_static), ("mu_kinetic", self.mu_kinetic)):
+            if not 0.0 <= value < math.inf:
+                raise ValueError(f"{name} must be finite and not negative, got {value}")
+        if self.mu_kinetic > self.mu_static:
+            raise ValueError(
+                f"mu_kinetic must not exceed mu_static, got {self.mu_kinetic} > {self.mu_static}; "
+                "otherwise a body could neither stick nor slide"
+            )
 
     @property
     def slides_flat(self) -> bool:
@@ -352,6 +348,14 @@ class PlanarBlock:
             direction=state.direction,
         )
 
+    def rate(self, state: PlanarState, values: FloatArray, acceleration: Acceleration) -> FloatArray:
+        """Time derivative of the values while it moves in this state."""
+        if state.mode is PlanarMode.SLIDE:
+            friction = -state.direction * self.mu_kinetic * self.pressure(acceleration)
+            return np.array([values[1], friction - acceleration.x, 0.0, 0.0])
+        contact = self.contact(state, values, acceleration)
+        return np.array([values[1], contact.slip_acceleration, values[3], contact.tilt_acceleration])
+
     def _on_corner(
         self, values: FloatArray, side: int, direction: int, acceleration: Acceleration
     ) -> PlanarState:
@@ -393,38 +397,52 @@ def simulate_planar_block(
     if not abs(rotation) < 0.5 * math.pi:
         raise ValueError(f"planar block: the start must lie below 90 degrees, got {rotation} rad")
     body = block.body
+    angle, frequency = body.slenderness_angle, body.frequency_parameter
     inertia = body.inertia_ratio * body.radius**2
     least_rate = math.sqrt(2.0 * REST_ENERGY * body.overturning_energy / inertia)
     pieces: list[Piece] = []
     states: list[PlanarState] = []
-    transitions: list[PlanarTransition] = []
     impacts: list[PlanarImpact] = []
 
-    time, reason = 0.0, "start"
+    time = 0.0
     side = int(np.sign(rotation)) or int(np.sign(angular_velocity))
     values = np.array([0.0, slip_velocity, side * rotation, side * angular_velocity])
     state = block.select(values, side, floor.just_after(0.0))
     for _ in range(MAX_EVENTS):
-        transitions.append(PlanarTransition(time=time, state=state, reason=reason))
+        states.append(state)
         if state.mode in (PlanarMode.OVERTURNED, PlanarMode.OUTSIDE):
             break
-        passage = _follow(block, state, values, time, duration, floor, regime=len(states))
-        states.append(state)
+        first_step = None
+        if state.side and values[2] <= 0.0:  # well inside the hop that follows an impact
+            fall = abs(block.contact(state, values, floor.just_after(time)).tilt_acceleration)
+            hop = 0.5 * values[3] / fall if fall * values[3] > 0.0 else math.inf
+            first_step = min(0.01 / frequency, hop)
+        passage = flow(
+            rate=None if state.mode is PlanarMode.REST else partial(block.rate, state),
+            guards=_guards(block, state),
+            state=values,
+            start=time,
+            end=duration,
+            floor=floor,
+            scale=np.array([body.half_width, body.half_width * frequency, angle, angle * frequency]),
+            regime=len(states) - 1,
+            first_step=first_step,
+        )
         pieces.extend(passage.pieces)
         time, values = passage.time, passage.state.copy()
         if passage.event is None:
             break
-        reason, acceleration = passage.event, floor.just_after(time)
+        event, acceleration = passage.event, floor.just_after(time)
         side = state.side
-        if reason == "overturned":
+        if event == "overturned":
             state = PlanarState(mode=PlanarMode.OVERTURNED, side=side)
             continue
-        if reason == "leaves the floor":
+        if event == "leaves the floor":
             state = PlanarState(mode=PlanarMode.OUTSIDE, side=side)
             continue
-        if reason == "stops":
+        if event == "stops":
             values[1] = 0.0
-        if reason == "impact":
+        if event == "impact":
             impact = corner_impact(
                 body,
                 side,
@@ -434,7 +452,7 @@ def simulate_planar_block(
                 mu_kinetic=block.mu_kinetic,
             )
             if impact is None:
-                state, reason = PlanarState(mode=PlanarMode.OUTSIDE, side=side), "no consistent impulses"
+                state = PlanarState(mode=PlanarMode.OUTSIDE, side=side)  # no consistent impulses
                 continue
             rate = impact.tilt_rate
             if rate < least_rate:  # its base may lie on the floor
@@ -461,65 +479,12 @@ def simulate_planar_block(
     peaks = [abs(side * float(turn[1][2])) for side, turn in turns if turn is not None]
     tilts = [float(piece.interpolant(t)[2]) for piece in pieces for t in (piece.start, piece.end)]
     return PlanarMotion(
-        transitions=tuple(transitions),
+        states=tuple(states),
         impacts=tuple(impacts),
         end=time,
         largest_rotation=max([float(values[2]), *tilts, *peaks]),
         pieces=tuple(pieces),
-        states=tuple(states),
     )
-
-
-def _follow(
-    block: PlanarBlock,
-    state: PlanarState,
-    values: FloatArray,
-    time: float,
-    duration: float,
-    floor: FloorAcceleration,
-    regime: int,
-) -> Passage:
-    body = block.body
-    angle, frequency = body.slenderness_angle, body.frequency_parameter
-    first_step = None
-    if state.side and values[2] <= 0.0:  # well inside the hop that follows an impact
-        fall = abs(block.contact(state, values, floor.just_after(time)).tilt_acceleration)
-        first_step = min(0.01 / frequency, 0.5 * values[3] / fall if fall * values[3] > 0.0 else math.inf)
-    return flow(
-        rate=None if state.mode is PlanarMode.REST else _rate(block, state),
-        guards=_guards(block, state),
-        state=values,
-        start=time,
-        end=duration,
-        floor=floor,
-        scale=np.array([body.half_width, body.half_width * frequency, angle, angle * frequency]),
-        regime=regime,
-        first_step=first_step,
-    )
-
-
-def check_friction(mu_static: float, mu_kinetic: float) -> None:
-    """Refuse coefficients that are negative or not finite, and mu_kinetic above mu_static."""
-    for name, value in (("mu_static", mu_static), ("mu_kinetic", mu_kinetic)):
-        if not 0.0 <= value < math.inf:
-            raise ValueError(f"{name} must be finite and not negative, got {value}")
-    if mu_kinetic > mu_static:
-        raise ValueError(
-            f"mu_kinetic must not exceed mu_static, got {mu_kinetic} > {mu_static}; "
-            "otherwise a body could neither stick nor slide"
-        )
-
-
-def _rate(block: PlanarBlock, state: PlanarState) -> Rate:
-    def slide(values: FloatArray, acceleration: Acceleration) -> FloatArray:
-        friction = -state.direction * block.mu_kinetic * block.pressure(acceleration)
-        return np.array([values[1], friction - acceleration.x, 0.0, 0.0])
-
-    def turn(values: FloatArray, acceleration: Acceleration) -> FloatArray:
-        contact = block.contact(state, values, acceleration)
-        return np.array([values[1], contact.slip_acceleration, values[3], contact.tilt_acceleration])
-
-    return slide if state.mode is PlanarMode.SLIDE else turn
 
 
 def _guards(block: PlanarBlock, state: PlanarState) -> tuple[Guard, ...]:

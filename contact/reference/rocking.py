@@ -45,7 +45,6 @@ class RockingPeak:
 class RockingMotion:
     """Motion of a block that cannot slide."""
 
-    block: RigidBlock
     restitution: float  #: used at every impact [-]
     outcome: PlanarMode
     impacts: tuple[PlanarImpact, ...]
@@ -149,7 +148,12 @@ def simulate_rocking(
     else:
         raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} impacts and uplifts; try a larger rest_energy")
 
-    peaks = _peaks(pieces)
+    turns = ((piece.regime - 1, turning_point(piece, component=1)) for piece in pieces)
+    peaks = tuple(
+        RockingPeak(time=turn[0], rotation=side * float(turn[1][0]))
+        for side, turn in turns
+        if turn is not None
+    )
     ends = [abs(float(piece.interpolant(t)[0])) for piece in pieces for t in (piece.start, piece.end)]
     largest = max([*ends, *(abs(peak.rotation) for peak in peaks)])
     moved = bool(impacts or uplifts or rotation or angular_velocity)
@@ -160,7 +164,6 @@ def simulate_rocking(
     else:
         outcome = PlanarMode.ROCK if moved else PlanarMode.REST
     return RockingMotion(
-        block=block,
         restitution=used,
         outcome=outcome,
         impacts=tuple(impacts),
@@ -208,12 +211,3 @@ def _first_step(block: RigidBlock, side: int, state: FloatArray, acceleration: A
     fall = abs(_rate(block, side)(state, acceleration)[1])
     longest = 0.01 / block.frequency_parameter
     return min(longest, 0.5 * state[1] / fall) if fall > 0.0 and state[1] > 0.0 else longest
-
-
-def _peaks(pieces: list[Piece]) -> tuple[RockingPeak, ...]:
-    turns = ((piece.regime - 1, turning_point(piece, component=1)) for piece in pieces)
-    return tuple(
-        RockingPeak(time=turn[0], rotation=side * float(turn[1][0]))
-        for side, turn in turns
-        if turn is not None
-    )

@@ -2,7 +2,7 @@
 
 A body has coordinates, whose number and meaning only the body knows, and base points that may touch the floor. The
 stepping calls the functions of this module: `weigh`, `predict`, `release`, `respond`, `complete`, `observe`,
-`shift_velocity` and `prepared`. In compiled code they are those of `contact.stepping.modal_kernels` (a
+`shift_velocity` and `prepared`. In compiled code they are those of `contact.stepping.modal_body` (a
 floating frame with elastic modes), of `fem.solid.nodal_kernels` (the nodes of a mesh) or of
 `contact.stepping.loose_stack` (boxes that stand on one another), see `implements`. In Python they call the method of
 the body with the same name.
@@ -10,7 +10,6 @@ the body with the same name.
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -79,24 +78,12 @@ class Ground(NamedTuple):
 
 def make_state(coordinates: int, points: int, monitors: int, boxes: int = 0) -> State:
     """Allocate a state for these numbers of coordinates, base points, monitored points and boxes of a loose stack."""
-    size, parts = _parts_of_a_state(coordinates, points, boxes)
-    numbers = np.zeros(size)
-    fields = {name: numbers[part].reshape(shape) for name, part, shape in parts}
-    return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
-
-
-@cache  # asked twice for each run of a map
-def _parts_of_a_state(
-    coordinates: int, points: int, boxes: int
-) -> tuple[int, list[tuple[str, slice, tuple[int, ...]]]]:
-    """How many numbers a state has, and of each field its name, its place among them and its shape."""
     shapes = shapes_of(State, **{"d": coordinates, "n": points, "N": boxes, "4N": 4 * boxes})
-    parts, begin = [], 0
+    numbers, fields, begin = np.zeros(sum(map(math.prod, shapes.values()))), {}, 0
     for name, shape in shapes.items():
-        end = begin + math.prod(shape)
-        parts.append((name, slice(begin, end), shape))
-        begin = end
-    return begin, parts
+        fields[name] = numbers[begin : begin + math.prod(shape)].reshape(shape)
+        begin += math.prod(shape)
+    return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
 
 
 def implements(
@@ -112,18 +99,6 @@ def implements(
         return implementation
 
     return register
-
-
-def passes_on(layer: type, *operations: Callable[..., Any]) -> None:
-    """Let a layer over a body, its field `body`, leave these operations to that body."""
-    for operation in operations:
-        _pass_on(layer, operation)
-
-
-def _pass_on(layer: type, operation: Callable[..., Any]) -> None:
-    @implements(operation, layer, inline=True)
-    def beneath(over: Any, *arguments: Any) -> Any:
-        return operation(over.body, *arguments)
 
 
 def weigh(body: Any, contact: Contact, old: State) -> None:

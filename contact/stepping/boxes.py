@@ -4,7 +4,7 @@ import math
 
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
-from contact.stepping.joints import points_of
+from contact.stepping.joints import in_a_row, points_of
 from contact.stepping.links import follow_touch
 from contact.stepping.modes import REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.observables import NEVER, OPENING
@@ -18,11 +18,14 @@ POINTS_OF_GAP = 4  #: contact points of two bodies that face each other
 
 
 @compiled
-def follow_boxes(run: RunState, step: float) -> None:
-    """Update openings, rotations, falls and the mode of a loose stack from the step about to be accepted.
+def follow_boxes(run: RunState, step: float, apart: float, loose: bool | None) -> None:
+    """Update openings, rotations, falls, gaps and the mode of a loose stack from the step about to be accepted.
 
-    A box falls when it has turned by 90 degrees, or when a corner of an upper box meets the floor.
+    A box falls when it has turned by 90 degrees, or when a corner of an upper box meets the floor. `apart`: see
+    `links.follow_touch`.
     """
+    if loose is None:
+        return
     new, track, control = run.attempt.new, run.track[0], run.problem.control
     rocks, slides = track.mode in (ROCK, SLIDE_ROCK), track.mode in (SLIDE, SLIDE_ROCK)
     for j in range(run.joints.shape[0]):
@@ -50,27 +53,22 @@ def follow_boxes(run: RunState, step: float) -> None:
             joint.fell_at = run.clock[0].time + step
     track.mode = (ROCK if rocks else REST) + (SLIDE if slides else REST)
     track.modes |= 1 << track.mode
-
-
-@compiled
-def follow_gap(run: RunState, step: float, g: int, apart: float) -> None:
-    """Update the record of one gap of a row, as `follow_touch`; its force is that of its four points together.
-
-    A point of no weight is a corner beside the other body's side: its distance says nothing of the gap.
-    """
-    old, new = run.old, run.attempt.new
-    first = run.joints[run.joints.shape[0] - 1].end + POINTS_OF_GAP * g
-    before, after, force, speed = NEVER, NEVER, 0.0, 0.0
-    for i in range(first, first + POINTS_OF_GAP):
-        before = min(before, old.point[i, 1])
-        if run.problem.contact.normal_stiffness[i] > 0.0:
-            after = min(after, new.point[i, 1])
-        force += new.force[i, 1]
-        if new.point[i, 1] < 0.0 <= old.point[i, 1]:
-            speed = max(speed, old.descent[i, 0])
-            if run.clock[0].steps == 0:  # the velocity of a touch at t = 0 follows from the step alone
-                speed = max(speed, (old.point[i, 1] - new.point[i, 1]) / step)
-    follow_touch(run.links[g], force, (before, after), speed, apart)
+    last = run.joints.shape[0] - 1
+    for g in range(last if in_a_row(run) else 0):  # the force in a gap is that of its four points together
+        first = run.joints[last].end + POINTS_OF_GAP * g
+        closest, gap, force, speed = NEVER, NEVER, 0.0, 0.0
+        for i in range(first, first + POINTS_OF_GAP):
+            now, then = new.point[i, 1], run.old.point[i, 1]
+            closest = min(closest, then)
+            # a point of no weight is a corner beside the other body's side: its distance says nothing of the gap
+            if run.problem.contact.normal_stiffness[i] > 0.0:
+                gap = min(gap, now)
+            force += new.force[i, 1]
+            if now < 0.0 <= then:
+                speed = max(speed, run.old.descent[i, 0])
+                if run.clock[0].steps == 0:  # the velocity of a touch at t = 0 follows from the step alone
+                    speed = max(speed, (then - now) / step)
+        follow_touch(run.links[g], force, (closest, gap), speed, apart)
 
 
 @inlined
@@ -88,9 +86,7 @@ def has_fallen(run: RunState) -> bool:
 @inlined
 def rotation_of(run: RunState, j: int) -> float:
     """Rotation of a box of a loose stack or a body of a row, or of a body that moves as one [rad]."""
-    if run.joints.shape[0] == 1:
-        return float(run.old.pose[ROTATION])
-    return float(run.old.boxes[j, ROTATION])
+    return float(run.old.pose[ROTATION] if run.joints.shape[0] == 1 else run.old.boxes[j, ROTATION])
 
 
 @inlined

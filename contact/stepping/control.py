@@ -5,7 +5,6 @@ onset of sliding and the end of sliding get small steps. Otherwise the energy ba
 """
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -39,63 +38,49 @@ def _rests_beside(state: State, other: int, point: int, distance: float) -> bool
 
 
 @compiled(inline=True)
-def closing_time(control: Control, state: State, horizon: float) -> float:
-    """Time until a base point touches the floor with more than the closing speed [s], or the horizon.
-
-    A point beside a closed one (a wide base closes point by point) adds no mass of its own and is left to the ledger.
-    """
-    first = horizon
-    n = state.point.shape[0]
-    for i in range(n):
-        if _rests_beside(state, i - 1, i, control.near) or _rests_beside(state, i + 1, i, control.near):
-            continue
-        gap, speed, rate = state.point[i, 1], state.descent[i, 0], state.descent[i, 1]
-        if gap > 0.0 and speed * first + 0.5 * max(rate, 0.0) * first * first > gap:
-            root = speed * speed + 2.0 * rate * gap
-            if root > control.closing_speed**2:
-                first = min(first, 2.0 * gap / (speed + np.sqrt(root)))
-        elif speed > control.closing_speed and -0.5 * control.closing_step * speed < gap <= 0.0:
-            first = 0.0
-    return first
-
-
-@compiled(inline=True)
-def switching_time(joints: Any, horizon: float) -> float:
-    """Time until a sticking joint reaches its limit or a sliding joint stops [s], at most the horizon."""
-    first = horizon
-    for j in range(joints.shape[0]):
-        joint = joints[j]
-        if joint.sliding == 0:
-            left, rate = 1.0 - joint.utilisation, joint.utilisation_rate
-            if left < AT_LIMIT:  # it slides at its limit, without having broken loose
-                continue
-        else:
-            left, rate = abs(joint.slip_velocity), -joint.slip_acceleration
-            if joint.slip_velocity < 0.0:
-                rate = -rate
-        if rate * first > left > 0.0:
-            first = left / rate
-    return first
-
-
-@compiled(inline=True)
 def next_step(run: RunState) -> float:
     """The next step [s]: that of the present level, or shorter.
 
-    If a gap is about to close, the step ends where it closes, and the next one, in which the dashpot acts, is small. A
-    step also ends at each instant of `run.problem.breaks`.
+    If a base point is about to touch the floor with more than the closing speed, the step ends where it does, and the
+    next one, in which the dashpot acts, is small. A point beside a closed one (a wide base closes point by point) adds
+    no mass of its own and is left to the ledger. A step also ends where a sticking joint reaches its limit or a sliding
+    one stops, and at each instant of `run.problem.breaks`.
     """
-    clock, control = run.clock[0], run.problem.control
+    clock, control, old = run.clock[0], run.problem.control, run.old
     step = step_of_level(control.largest_step, clock.level)
     if step > control.closing_step:
-        due = max(closing_time(control, run.old, step), control.closing_step)
+        first = step
+        for i in range(old.point.shape[0]):
+            if _rests_beside(old, i - 1, i, control.near) or _rests_beside(old, i + 1, i, control.near):
+                continue
+            gap, speed, rate = old.point[i, 1], old.descent[i, 0], old.descent[i, 1]
+            if gap > 0.0 and speed * first + 0.5 * max(rate, 0.0) * first * first > gap:
+                root = speed * speed + 2.0 * rate * gap
+                if root > control.closing_speed**2:
+                    first = min(first, 2.0 * gap / (speed + np.sqrt(root)))
+            elif speed > control.closing_speed and -0.5 * control.closing_step * speed < gap <= 0.0:
+                first = 0.0
+        due = max(first, control.closing_step)
         if due < step:  # use a size of the sequence: a body that factors a matrix needs few different sizes
             due_level = step_level(control.largest_step, due)
             step = step_of_level(control.largest_step, due_level)
             if due == control.closing_step:
                 clock.level = due_level
     if step > control.event_step:
-        due = max(switching_time(run.joints, step), control.event_step)
+        first = step
+        for j in range(run.joints.shape[0]):
+            joint = run.joints[j]
+            if joint.sliding == 0:
+                left, rate = 1.0 - joint.utilisation, joint.utilisation_rate
+                if left < AT_LIMIT:  # it slides at its limit, without having broken loose
+                    continue
+            else:
+                left, rate = abs(joint.slip_velocity), -joint.slip_acceleration
+                if joint.slip_velocity < 0.0:
+                    rate = -rate
+            if rate * first > left > 0.0:
+                first = left / rate
+        due = max(first, control.event_step)
         if due < step:
             step = step_of_level(control.largest_step, step_level(control.largest_step, due))
     while run.problem.breaks[clock.next_break] <= clock.time:

@@ -7,15 +7,21 @@ size.
 `advance` is written once: `outcome.advance_compiled` steps bodies in floating frames,
 `fem.solid.nodal_kernels.advance_nodal` a finite-element body, and `advance` itself, in Python, any object with the
 methods of `contact.stepping.body`. All use the same compiled laws, contact solver and ledger.
+
+A `BlockOnCorners` is stepped on arrays of constant shape, which are kept in registers. State, scratch and attempted
+step are copied to such arrays, the run is advanced, and what others read is copied back. A run for its outcome is
+advanced once or some hundred times, in thousands of steps.
 """
 
 from typing import Any
 
+from contact.arrays import FloatArray
+from contact.interface.workspace import Workspace
 from contact.jit import compiled, inlined
-from contact.motion.kernel import UNIFORM
-from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
-from contact.stepping.body import complete, prepared, shift_velocity, stands_loose, weigh
-from contact.stepping.boxes import follow_boxes, follow_gap, has_fallen
+from contact.layout import exchanging, parts_of, room_of
+from contact.local_arrays import local_counts, local_row, local_rows
+from contact.stepping.body import State, complete, implements, prepared, shift_velocity, stands_loose, weigh
+from contact.stepping.boxes import follow_boxes, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
     GROWTH,
@@ -29,21 +35,16 @@ from contact.stepping.control import (
     step_level,
 )
 from contact.stepping.impact import lose_at_impacts
-from contact.stepping.joints import (
-    friction_of,
-    in_a_row,
-    settle_friction,
-    slide_points,
-    update_joints,
-    weaken_friction,
-)
+from contact.stepping.joints import friction_of, settle_friction, slide_points, update_joints
 from contact.stepping.ledger import IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
-from contact.stepping.links import follow_links, links_of, reach_strength
+from contact.stepping.links import LinkedBody, follow_links, links_of, reach_strength
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import BlockOnCorners, LocalBlock, ModalBody
 from contact.stepping.modes import FALLEN
 from contact.stepping.observables import IMPACT_GAP, NEVER, update_observables
 from contact.stepping.sampling import keep_most_strained_step, sample
-from contact.stepping.state import RunState
+from contact.stepping.state import AttemptedStep, RunState
 from contact.stepping.step import account, attempt, indent
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
@@ -55,36 +56,6 @@ FADING, SHORT_FADING = 0.8, 0.5
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
-
-
-@compiled(inline=True)
-def close_step(run: RunState, step: float, iterations: int) -> None:
-    """Make the step the state of the run and add its terms to the ledger."""
-    clock = run.clock[0]
-    for row in range(LEDGER_ROWS):
-        run.ledger[row] += run.attempt.change[row]
-    if run.track[0].overturned_at == NEVER:  # the impact after overturning does not matter
-        clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
-        clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
-        clock.dissipated = dissipation(run.ledger)
-    for j in range(run.joints.shape[0]):
-        run.joints[j].slip += run.joints[j].shift
-    clock.rolling_before = clock.rolling
-    clock.time += step
-    clock.steps += 1
-    clock.iterations += iterations
-    clock.smallest_step = min(clock.smallest_step, step)
-    for i in range(run.old.numbers.size):  # all but the monitored points
-        run.old.numbers[i] = run.attempt.new.numbers[i]
-    if run.joints.shape[0] > 1:
-        clock.spring_energy = spring_energy(run.problem.contact, run.old.point, run.old.stick)
-        for j in range(run.joints.shape[0]):
-            run.joints[j].opening = run.joints[j].opens
-    for k in range(3):
-        run.floor[0, k] = run.floor[1, k]
-    if run.problem.vertical.kind != UNIFORM:
-        for k in range(3):
-            run.lift[0, k] = run.lift[1, k]
 
 
 @inlined
@@ -130,8 +101,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             iterations = attempt(body, run, step)
             if iterations < 0:
                 break
-            slide_points(run, step, loose, links)
-            if not weaken_friction(run):
+            if not slide_points(run, step, loose, links):
                 break
         if iterations < 0:
             clock.rejected += 1
@@ -163,18 +133,36 @@ def advance(body: Any, run: RunState, until: float) -> int:
         counts = IMPACT_GAP * control.width * control.slenderness_angle
         follow_links(run, step, links, counts)
         update_observables(run, step)
-        if loose is not None:
-            follow_boxes(run, step)
-            for gap in range(run.joints.shape[0] - 1 if in_a_row(run) else 0):
-                follow_gap(run, step, gap, counts)
+        follow_boxes(run, step, counts, loose)
         follow_contents(body, run, step)
         clock.samples = sample(run, history, clock.samples, clock.samples_drained, step, loose)
         clock.frames = sample(run, frames, clock.frames, clock.frames_drained, step, loose)
         lose_at_impacts(body, run, loose)
         keep_most_strained_step(run, step)
-        close_step(run, step, iterations)
-        # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
+        # The step becomes the state of the run.
         stacked = run.joints.shape[0] > 1
+        for row in range(LEDGER_ROWS):
+            run.ledger[row] += run.attempt.change[row]
+        if track.overturned_at == NEVER:  # the impact after overturning does not matter
+            clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
+            clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
+            clock.dissipated = dissipation(run.ledger)
+        clock.rolling_before = clock.rolling
+        clock.time += step
+        clock.steps += 1
+        clock.iterations += iterations
+        clock.smallest_step = min(clock.smallest_step, step)
+        for i in range(run.old.numbers.size):  # all but the monitored points
+            run.old.numbers[i] = run.attempt.new.numbers[i]
+        if stacked:
+            clock.spring_energy = spring_energy(run.problem.contact, run.old.point, run.old.stick)
+        for j in range(run.joints.shape[0]):
+            run.joints[j].slip += run.joints[j].shift
+            run.joints[j].opening = run.joints[j].opens
+        for k in range(3):
+            run.floor[0, k] = run.floor[1, k]
+            run.lift[0, k] = run.lift[1, k]
+        # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         fading = SHORT_FADING if stacked or control.eager else FADING
         recent, not_held = max(min(used, 1.0), fading * clock.allowance_used), clock.growth_hold == 0
         if control.eager:
@@ -189,10 +177,159 @@ def advance(body: Any, run: RunState, until: float) -> int:
             track.overturned_at = clock.time
             track.mode = FALLEN
             track.modes |= 1 << FALLEN
-            if control.stop_when_overturned or run.joints.shape[0] > 1:
+            if control.stop_when_overturned or stacked:
                 return OVERTURNED
     return REACHED
 
 
+inlined(advance)
 advance_kernel = compiled(advance)
 enter_floor_frame_compiled = compiled(enter_floor_frame)
+
+#: sizes in the layouts of a `BlockOnCorners`: coordinates, points, boxes of a loose stack
+SIZES = {"d": 3, "n": 2, "2n": 4, "N": 0, "4N": 0}
+NUMBERS, _ = room_of(State, **SIZES)
+NUMBERS_OF_WORK, COUNTS_OF_WORK = room_of(Workspace, **SIZES)
+
+
+# In kernels these are made by value: the compiler sees their arrays.
+class LocalState(State):
+    """A state in registers."""
+
+
+class LocalWorkspace(Workspace):
+    """A workspace in registers."""
+
+
+class LocalAttempt(AttemptedStep):
+    """An attempted step in registers."""
+
+
+class LocalRun(RunState):
+    """A run whose states and workspace are in registers."""
+
+
+FloatingBody = ModalBody | LooseStack | LinkedBody  #: what this module steps in machine code
+local_state = parts_of(LocalState, State, **SIZES)
+local_work = parts_of(LocalWorkspace, Workspace, **SIZES)
+local_run = exchanging(LocalRun, "attempt", "old", "work", "floor", "lift", "ledger")
+local_block = exchanging(
+    LocalBlock, "point", "stiffness", "damping", "cached_step", "recent", "inverse", "arm", "free_change"
+)
+
+
+def advance_on(body: FloatingBody, run: RunState, until: float) -> int:
+    """`advance`, compiled for the class of the body."""
+    return advance(body, run, until)
+
+
+@implements(advance_on, LooseStack, LinkedBody, inline=True)
+def advance_in_memory(body: FloatingBody, run: RunState, until: float) -> int:
+    """`advance` on the arrays of the run."""
+    return int(advance_kernel(body, run, until))
+
+
+@inlined
+def has_two_points(state: State) -> bool:
+    """Whether a state is of two points."""
+    if state.stick.size != 2 or state.crushed.size != 2:
+        return False
+    if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
+        return False
+    if state.drift.shape[0] != 2 or state.drift.shape[1] != 2:
+        return False
+    return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
+
+
+@inlined
+def stands_on_corners(body: ModalBody, run: RunState) -> bool:
+    """Whether a body has two points: from each comparison with a constant the compiler infers a size."""
+    work = run.work
+    if body.point.shape[0] != 2 or run.problem.control.base_points != 2 or run.joints.shape[0] != 1:
+        return False
+    if run.links.shape[0] != 0:
+        return False
+    if body.moved.shape[1] != 4 or body.across.shape[1] != 4:
+        return False
+    if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
+        return False
+    if work.point.shape[0] != 2 or work.slope.shape[0] != 2:
+        return False
+    if work.force.shape[0] != 2 or work.force.shape[1] != 2:
+        return False
+    return has_two_points(run.old) and has_two_points(run.attempt.new)
+
+
+@implements(advance_on, ModalBody)
+def advance_on_points(body: ModalBody, run: RunState, until: float) -> int:
+    """`advance`, twice in the machine code: where sizes are known, loops are unrolled. numba translates it once."""
+    if stands_on_corners(body, run):
+        return advance(body, run, until)
+    return int(advance_kernel(body, run, until))
+
+
+@inlined
+def copy_row(target: FloatArray, source: FloatArray, size: int) -> None:
+    """Copy the first numbers of a row."""
+    for i in range(size):
+        target[i] = source[i]
+
+
+@inlined
+def copy_pair(target: FloatArray, source: FloatArray, columns: int) -> None:
+    """Copy two rows."""
+    for i in range(2):
+        for k in range(columns):
+            target[i, k] = source[i, k]
+
+
+@implements(advance_on, BlockOnCorners)
+def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> int:
+    """`advance` on arrays of constant shape; of the last attempt what the residual needs is copied back."""
+    if body.stiffness.size != 0 or body.point.shape[0] != 2 or run.problem.control.base_points != 2:
+        return FAILED
+    if run.links.shape[0] != 0:
+        return FAILED
+    if run.joints.shape[0] != 1 or run.old.numbers.size != NUMBERS or run.attempt.new.numbers.size != NUMBERS:
+        return FAILED
+    before, after, point, nothing = local_row(NUMBERS), local_row(NUMBERS), local_rows(2, 2), local_row(0)
+    floor, lift, ledger, none = local_rows(2, 3), local_rows(2, 3), local_row(LEDGER_ROWS), local_counts(0)
+    work = local_work(run.work, local_row(NUMBERS_OF_WORK), local_counts(COUNTS_OF_WORK))
+    block = local_block(
+        body,
+        point=point,
+        stiffness=nothing,
+        damping=nothing,
+        cached_step=local_row(2),
+        recent=local_counts(1),
+        inverse=local_rows(1, 3),
+        arm=local_rows(2, 2),
+        free_change=local_row(3),
+    )
+    attempt = LocalAttempt(
+        local_state(run.attempt.new, after, none), slip=local_row(2), change=local_row(LEDGER_ROWS)
+    )
+    own = local_run(
+        run,
+        attempt=attempt,
+        old=local_state(run.old, before, none),
+        work=work,
+        floor=floor,
+        lift=lift,
+        ledger=ledger,
+    )
+    copy_pair(point, body.point, 2)
+    copy_row(before, run.old.numbers, NUMBERS)
+    copy_row(after, run.attempt.new.numbers, NUMBERS)
+    copy_pair(floor, run.floor, 3)
+    copy_pair(lift, run.lift, 3)
+    copy_row(ledger, run.ledger, LEDGER_ROWS)
+    status = advance(block, own, until)
+    copy_row(run.old.numbers, before, NUMBERS)
+    copy_row(run.attempt.new.numbers, after, NUMBERS)
+    copy_pair(run.floor, floor, 3)
+    copy_pair(run.lift, lift, 3)
+    copy_row(run.ledger, ledger, LEDGER_ROWS)
+    copy_pair(run.work.law, work.law, 2)
+    copy_pair(run.work.force, work.force, 2)
+    return status

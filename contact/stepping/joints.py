@@ -41,25 +41,12 @@ def friction_of(run: RunState, j: int, slid: float) -> float:
 
 
 @compiled(inline=True)
-def weaken_friction(run: RunState) -> bool:
-    """Coefficients of friction after the slip of the attempted step; whether one of them has changed."""
-    changed = False
-    for j in range(run.joints.shape[0]):
-        joint = run.joints[j]
-        if joint.sliding == 1 and run.problem.contact.weakening[points_of(run, j)[0]] > 0.0:
-            weakened = friction_of(run, j, joint.slip_since_break + abs(joint.slip_step))
-            if abs(weakened - joint.mu) > WEAKENING_TOLERANCE:
-                joint.mu, changed = weakened, True
-    return changed
-
-
-@compiled(inline=True)
 def settle_friction(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> bool:
     """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it.
 
     A joint whose points all slide at the limit of static friction breaks loose as a whole where a rigid body would
     slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic swing, which lasts
-    milliseconds and slides micrometres: too little for friction to fall.
+    milliseconds and slides micrometres: too little for friction to fall. Where a joint stops, its slip may change.
     """
     switches = False
     for j in range(run.joints.shape[0]):
@@ -67,8 +54,20 @@ def settle_friction(run: RunState, step: float, loose: bool | None, links: Linke
         every = joint.motion == ALL or (joint.motion == AIRBORNE and joint.sliding == 1)
         turned = False
         if run.problem.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
-            turned = joint.velocity * joint.slip_velocity < 0.0
-            every = slides_on(run, j, step, turned, loose, links)
+            # It stops where its slip has turned round, or none of its points slides, and static friction can hold it. A
+            # slip that turns round without a stop goes on: kinetic friction remains, and the path since it broke loose.
+            turned, every = joint.velocity * joint.slip_velocity < 0.0, True
+            if turned or joint.motion == NO_POINT:
+                holding, normal = holding_force(run, j, loose, links)
+                every = not abs(holding) <= mu_static * normal
+                weight = 0.0
+                for k in range(j, run.joints.shape[0]):
+                    if k > j and run.joints[k].below < 0:
+                        break
+                    weight += run.joints[k].mass * (run.problem.control.gravity + run.lift[1, 2])
+                # a stop within an impact does not last
+                if turned and not every and normal < IMPACT_LOAD * weight:
+                    slide(run, j, step, holding)
         elif run.problem.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
             holding, normal = holding_force(run, j, loose, links)
             slid = joint.slip_since_break + abs(joint.slip_step)
@@ -78,31 +77,6 @@ def settle_friction(run: RunState, step: float, loose: bool | None, links: Linke
         switches = switches or (changes and mu_static > 0.0)
         joint.slides = 1 if every else 0
     return switches
-
-
-@compiled(inline=True)
-def slides_on(
-    run: RunState, j: int, step: float, turned: bool, loose: bool | None, links: LinkedBody | None
-) -> bool:
-    """Whether a sliding joint slides on after the attempted step; where it stops, its slip of the step may change.
-
-    It stops where its slip has `turned` round, or none of its points slides, and static friction can hold it. A slip
-    that turns round without a stop goes on: kinetic friction remains, and the path since the joint broke loose.
-    """
-    joint = run.joints[j]
-    if turned or joint.motion == NO_POINT:
-        holding, normal = holding_force(run, j, loose, links)
-        if abs(holding) <= run.problem.contact.mu_static[points_of(run, j)[0]] * normal:
-            # a stop within an impact does not last
-            weight = 0.0
-            for k in range(j, run.joints.shape[0]):
-                if k > j and run.joints[k].below < 0:
-                    break
-                weight += run.joints[k].mass * (run.problem.control.gravity + run.lift[1, 2])
-            if turned and normal < IMPACT_LOAD * weight:
-                slide(run, j, step, holding)
-            return False
-    return True
 
 
 @compiled(inline=True)
@@ -118,9 +92,18 @@ def holding_force(run: RunState, j: int, loose: bool | None, links: LinkedBody |
     if loose is not None:
         if not in_a_row(run):
             return holding_in_stack(run, j, load_of_links(run, links, j, new.boxes[j]))
-        first, last = run.joints[j].begin, run.joints[j].end - 1
+        box, first, last = new.boxes[j], run.joints[j].begin, run.joints[j].end - 1
         stands = (new.force[first, 1] > 0.0) == (new.force[last, 1] > 0.0)
-        return holding_on_floor(run, j, new.boxes[j], stands, first, last, load_from_beside(run, j))
+        # what pushes it is all external force but that of the floor
+        own = j * (new.external.size // run.joints.shape[0])
+        x, z, moment = new.external[own], new.external[own + 1], new.external[own + 2]
+        for i in range(first, last + 1):
+            arm_x = new.point[i, 0] + run.floor[1, 0] - box[CENTRE_X]
+            arm_z = new.point[i, 1] - new.crushed[i] + run.lift[1, 0] - box[CENTRE_Z]
+            x -= new.force[i, 0]
+            z -= new.force[i, 1]
+            moment -= arm_z * new.force[i, 0] - arm_x * new.force[i, 1]
+        return holding_on_floor(run, j, box, stands, first, last, (x, z, moment))
     stands, last = track.left_open == track.right_open, run.problem.control.base_points - 1
     return holding_on_floor(run, j, new.pose, stands, 0, last, load_of_links(run, links, j, new.pose))
 
@@ -174,22 +157,6 @@ def holding_on_floor(
     return joint.mass * push, max(normal, joint.mass * load)
 
 
-@compiled
-def load_from_beside(run: RunState, j: int) -> tuple[float, float, float]:
-    """Forces on a body in a row but those of floor and gravity: x, z [N], their moment about its centre [Nm]."""
-    new = run.attempt.new
-    first = j * (new.external.size // run.joints.shape[0])
-    x, z, moment = new.external[first], new.external[first + 1], new.external[first + 2]
-    begin, end = points_of(run, j)
-    for i in range(begin, end):
-        arm_x = new.point[i, 0] + run.floor[1, 0] - new.boxes[j, CENTRE_X]
-        arm_z = new.point[i, 1] - new.crushed[i] + run.lift[1, 0] - new.boxes[j, CENTRE_Z]
-        x -= new.force[i, 0]
-        z -= new.force[i, 1]
-        moment -= arm_z * new.force[i, 0] - arm_x * new.force[i, 1]
-    return x, z, moment
-
-
 @inlined
 def touching_corner(i: int) -> int:
     """The corner that touches a face at a contact point of a loose stack, see `contact.interface.faces`."""
@@ -197,27 +164,6 @@ def touching_corner(i: int) -> int:
     if k % 2 == 1:
         return 4 * joint - 2 + k // 2
     return 4 * joint + k // 2
-
-
-@compiled
-def load_from_above(run: RunState, j: int) -> tuple[float, float, float]:
-    """Forces on a box from the joint on top of it, x and z [N], and their moment about its centre, > 0 as rotation."""
-    new, x, z, moment = run.attempt.new, 0.0, 0.0, 0.0
-    if j + 1 == run.joints.shape[0]:
-        return x, z, moment
-    begin, end = points_of(run, j + 1)
-    for i in range(begin, end):
-        lean = new.boxes[j + (i % 2), ROTATION]  # of the box whose face it is
-        cosine, sine = math.cos(lean), math.sin(lean)
-        along = -cosine * new.force[i, 0] - sine * new.force[i, 1]
-        up = sine * new.force[i, 0] - cosine * new.force[i, 1]
-        c = touching_corner(i)
-        arm_x = new.corner[c, 0] + run.floor[1, 0] - new.boxes[j, CENTRE_X]
-        arm_z = new.corner[c, 1] + run.lift[1, 0] - new.boxes[j, CENTRE_Z]
-        x += along
-        z += up
-        moment += arm_z * along - arm_x * up
-    return x, z, moment
 
 
 @compiled
@@ -245,7 +191,19 @@ def holding_in_stack(run: RunState, j: int, pushed: tuple[float, float, float]) 
         else:
             right += new.force[i, 1]
     normal, stands = left + right, (left > 0.0) == (right > 0.0)
-    above_x, above_z, moment = load_from_above(run, j)
+    above_x, above_z, moment = 0.0, 0.0, 0.0  # from the joint on top of it
+    low, high = points_of(run, j + 1) if j + 1 < run.joints.shape[0] else (0, 0)
+    for i in range(low, high):
+        lean = new.boxes[j + (i % 2), ROTATION]  # of the box whose face it is
+        cosine, sine = math.cos(lean), math.sin(lean)
+        along = -cosine * new.force[i, 0] - sine * new.force[i, 1]
+        up = sine * new.force[i, 0] - cosine * new.force[i, 1]
+        c = touching_corner(i)
+        arm_x = new.corner[c, 0] + run.floor[1, 0] - box[CENTRE_X]
+        arm_z = new.corner[c, 1] + run.lift[1, 0] - box[CENTRE_Z]
+        above_x += along
+        above_z += up
+        moment += arm_z * along - arm_x * up
     above_x, above_z, moment = above_x + pushed[0], above_z + pushed[1], moment + pushed[2]
     cosine, sine, swing, swung = 1.0, 0.0, 0.0, 0.0
     if j > 0:
@@ -399,21 +357,23 @@ def slide_point(run: RunState, i: int, step: float, start: float) -> None:
 
 
 @inlined
-def slide_points(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> None:
-    """Sliding of all joints, none of which stops, and of the other points, each for itself, after a step [s]."""
+def slide_points(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> bool:
+    """Sliding of all joints, none of which stops, and of the other points, each for itself, after a step [s].
+
+    Returns whether a coefficient of friction has changed, after this slip.
+    """
+    changed = False
     for j in range(run.joints.shape[0]):
+        joint = run.joints[j]
         slide(run, j, step, SLIDES_ON)
+        if joint.sliding == 1 and run.problem.contact.weakening[points_of(run, j)[0]] > 0.0:
+            weakened = friction_of(run, j, joint.slip_since_break + abs(joint.slip_step))
+            if abs(weakened - joint.mu) > WEAKENING_TOLERANCE:
+                joint.mu, changed = weakened, True
     if links is not None or loose is not None:
         for i in range(points_of(run, run.joints.shape[0] - 1)[1], run.attempt.new.point.shape[0]):
             slide_point(run, i, step, SLIDES_ON)
-
-
-@inlined
-def rub_apart(run: RunState, loose: bool | None, links: LinkedBody | None) -> None:
-    """Coefficients of friction of the points of no joint in a step, those of links and sides: they do not change."""
-    if links is not None or loose is not None:
-        for i in range(points_of(run, run.joints.shape[0] - 1)[1], run.work.mu.size):
-            run.work.mu[i] = run.problem.contact.mu_static[i]
+    return changed
 
 
 @compiled(inline=True)

@@ -5,7 +5,7 @@ and a place across it. A stop is a wall that moves with the floor; its line is h
 A tie pulls down, so its line leads down: its gap is the slack that is left, and it holds the point from above as a wall
 would. All laws, the solver and the ledger are then those of the floor: spring and dashpot that never pull, and Coulomb
 friction across the line. The points of the links are the last of a body; of a loose stack or a row each is on a side
-of one box (`contact.interface.contact_points.SidePoint`).
+of one box (`contact.interface.faces.SidePoint`).
 
 The cap of a link is its strength. A link that reaches it breaks at the end of the step: its point gets the indentation
 `BROKEN`, and never touches again. What its springs held is part of the contact damping.
@@ -22,7 +22,7 @@ from contact.arrays import FloatArray, IntArray
 from contact.interface.workspace import Workspace
 from contact.jit import compiled, inlined, options_of_piece
 from contact.stepping import body as interface
-from contact.stepping.body import CENTRE_X, CENTRE_Z, Ground, State, implements, passes_on, stands_loose
+from contact.stepping.body import CENTRE_X, CENTRE_Z, Ground, State, implements
 from contact.stepping.ledger import CONTACT_DAMPING, CRUSHING
 from contact.stepping.observables import NEVER
 from contact.stepping.scheme import Scheme
@@ -46,14 +46,14 @@ class LinkedBody(NamedTuple):
     line: FloatArray  #: (k, 5), see `ALONG_X`
 
 
-passes_on(
-    LinkedBody,
-    interface.weigh,
-    interface.predict,
-    interface.observe,
-    interface.shift_velocity,
-    interface.prepared,
-)
+def _leave_to_the_body(operation: Any) -> None:
+    @implements(operation, LinkedBody, inline=True)
+    def beneath(links: Any, *arguments: Any) -> Any:
+        return operation(links.body, *arguments)
+
+
+for name in ("weigh", "predict", "observe", "shift_velocity", "prepared", "stands_loose"):
+    _leave_to_the_body(getattr(interface, name))
 
 
 def make_lines(
@@ -84,12 +84,6 @@ def links_of(body: Any) -> Any:
 @overload(links_of, strict=False, jit_options=options_of_piece(True))
 def _links_of(body: Any) -> Any:
     return (lambda body: body) if "line" in getattr(body, "fields", ()) else (lambda body: None)
-
-
-@implements(stands_loose, LinkedBody, inline=True)
-def stands_loose_below(links: LinkedBody) -> bool | None:
-    """Whether the body with the links is a loose stack or a row."""
-    return stands_loose(links.body)
 
 
 @inlined

@@ -20,7 +20,6 @@ import numpy as np
 from contact.arrays import FloatArray
 from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
-from contact.stepping.block_on_corners import FloatingBody, advance_on
 from contact.stepping.body import KINETIC, VELOCITY_X
 from contact.stepping.boxes import has_footing, is_unsettled
 from contact.stepping.control import most_attempts
@@ -29,17 +28,17 @@ from contact.stepping.integrator import (
     FAILED,
     OVERTURNED,
     REACHED,
+    FloatingBody,
+    advance_on,
     enter_floor_frame_compiled,
 )
 from contact.stepping.joints import in_a_row
 from contact.stepping.links import LinkedBody
-from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import with_own_scratch
+from contact.stepping.loose_stack import LooseStack, stack_with_own_scratch
+from contact.stepping.modal_body import BlockOnCorners, own_scratch
 from contact.stepping.modes import FALLEN
 from contact.stepping.observables import NEVER, lifting_energy
-from contact.stepping.stack_body import stack_with_own_scratch
 from contact.stepping.state import ROW_SLIP, Buffers, RunState
-from contact.structs import struct
 
 #: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
 RESTING_ENERGY, RESTING_TIME = 1e-5, 1.0
@@ -47,16 +46,6 @@ RESTING_ENERGY, RESTING_TIME = 1e-5, 1.0
 DRIVEN, FREE, UNDECIDED = 0, 1, 2
 
 
-@struct
-class KeptSamples(NamedTuple):
-    """What is kept of the samples of a run."""
-
-    slip_until: float  #: [s]
-    slip: FloatArray  #: (n_k,) sample i up to `slip_until` is in column i modulo n_k [m]
-
-
-#: nothing, as where the caller drains the samples
-NOTHING_KEPT = KeptSamples(0.0, np.zeros(0))
 UNSETTLED = 4  #: as `integrator.REACHED`, but what becomes of the container is not decided yet
 
 
@@ -64,7 +53,7 @@ class SteppingEnd(NamedTuple):
     """Result of a run, besides its final state and records."""
 
     status: int  #: REACHED, OVERTURNED or FAILED (also at the limit of attempts)
-    samples: KeptSamples
+    slip: FloatArray  #: (n_k,) sample i, up to the last one kept, is in column i modulo n_k [m]
 
 
 def run_to_end(
@@ -90,30 +79,34 @@ def run_to_end(
     own = own_body(body)
     samples = run.buffers.history
     run.clock["attempt_limit"] = most_attempts(run.problem.control, duration + aftermath)
-    kept = KeptSamples(slip_until=float(slip_until), slip=np.zeros(math.ceil(cycle / samples.interval) + 2))
+    slip, kept_until = np.zeros(math.ceil(cycle / samples.interval) + 2), float(slip_until)
     if samples.position.shape[1] > 0 or samples.velocity.shape[1] > 0:
         samples = samples._replace(position=samples.position[:, :0], velocity=samples.velocity[:, :0])
     frames = run.buffers.frames._replace(interval=math.inf)
     run = run._replace(buffers=Buffers(history=samples, frames=frames))
     step_on: Callable[..., int] = advance_in_slices.call_by_class
-    status = step_on(own, run, kept, math.inf, float(rest_from), float(duration), DRIVEN)
+    status = step_on(own, run, slip, kept_until, math.inf, float(rest_from), float(duration), DRIVEN)
     if status == UNSETTLED:
         since = float(run.clock[0].time)
         x, velocity_x, _ = floor_motion(run.problem.motion, since)
         z, velocity_z, _ = floor_motion(run.problem.vertical, since)
         enter_floor_frame_compiled(own, run, velocity_x, velocity_z)
         run, end = on_resting_floor(run, since, (x, z)), float(duration + aftermath)
-        status = step_on(own, run, kept, AFTERMATH_SLICE, math.inf, end, UNDECIDED)
+        status = step_on(own, run, slip, kept_until, AFTERMATH_SLICE, math.inf, end, UNDECIDED)
         if status == REACHED and run.track[0].overturned_at < np.inf:
             status = OVERTURNED
-    return SteppingEnd(status, kept)
+    return SteppingEnd(status, slip)
 
 
 def own_body(body: FloatingBody) -> FloatingBody:
-    """The same body with scratch arrays of its own."""
+    """The same body with scratch arrays of its own; a rigid one on two points becomes a `BlockOnCorners`."""
     if isinstance(body, LinkedBody):
         return body._replace(body=own_body(body.body))
-    return stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
+    if isinstance(body, LooseStack):
+        return stack_with_own_scratch(body)
+    if body.stiffness.size == 0 and body.point.shape[0] == 2:  # the rest of its scratch is in registers
+        return BlockOnCorners(*body._replace(arm=np.empty_like(body.arm)))
+    return own_scratch(body)
 
 
 def advance_compiled(body: FloatingBody, run: RunState, until: float) -> int:
@@ -121,7 +114,8 @@ def advance_compiled(body: FloatingBody, run: RunState, until: float) -> int:
 
     It is in the kernel of runs without history, so that a run and its band compile the stepping once.
     """
-    return int(advance_in_slices(body, run, NOTHING_KEPT, math.inf, math.inf, until, DRIVEN))
+    nothing = np.zeros(0)  # the caller drains the samples
+    return int(advance_in_slices(body, run, nothing, 0.0, math.inf, math.inf, until, DRIVEN))
 
 
 def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> RunState:
@@ -196,7 +190,8 @@ def is_over(run: RunState, part: int) -> bool:
 def advance_in_slices(
     body: FloatingBody,
     run: RunState,
-    kept: KeptSamples,
+    slip: FloatArray,
+    slip_until: float,
     ahead: float,
     rest_from: float,
     until: float,
@@ -204,8 +199,9 @@ def advance_in_slices(
 ) -> int:
     """Step to `until` or until the run is over, looking at the samples every `ahead` [s] or sooner.
 
-    A driven run is free from `rest_from` on. Where nothing is kept of the samples, it returns as `integrator.advance`
-    does; else a driven run may end UNSETTLED, too.
+    A driven run is free from `rest_from` on. Of the samples up to `slip_until` the slip is kept, each in its column
+    modulo the size of `slip`. Where that has none, it returns as `integrator.advance` does; else a driven run may end
+    UNSETTLED, too.
     """
     clock = run.clock[0]
     while clock.time < until:
@@ -214,19 +210,19 @@ def advance_in_slices(
             break
         target = clock.next_look if now == FREE else min(clock.time + ahead, rest_from)
         status = advance_on(body, run, min(target, until))
-        if kept.slip.size == 0:
+        if slip.size == 0:
             return status
         samples = run.buffers.history
         for i in range(clock.samples - clock.samples_drained if samples.columns.shape[1] > 0 else 0):
             index = clock.samples_drained + i
-            if index * samples.interval <= kept.slip_until + 1e-9:
-                kept.slip[index % kept.slip.size] = samples.columns[i, ROW_SLIP]
+            if index * samples.interval <= slip_until + 1e-9:
+                slip[index % slip.size] = samples.columns[i, ROW_SLIP]
         clock.samples_drained = clock.samples
         if status != REACHED:
             return status
         if clock.time < until and clock.steps + clock.rejected >= clock.attempt_limit:
             return FAILED
-    if part == DRIVEN and kept.slip.size > 0:
+    if part == DRIVEN and slip.size > 0:
         if not is_over(run, UNDECIDED):
             return UNSETTLED
         if run.track[0].overturned_at < NEVER:

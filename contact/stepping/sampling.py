@@ -4,6 +4,7 @@ from contact.arrays import FloatArray
 from contact.interface.compliance import add_modes
 from contact.jit import compiled, inlined
 from contact.motion.kernel import floor_motion
+from contact.stepping import state
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
     CENTRE_X,
@@ -16,28 +17,7 @@ from contact.stepping.body import (
 from contact.stepping.joints import points_of
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.scheme import hermite
-from contact.stepping.state import (
-    BOX_CENTRE_X,
-    BOX_COLUMNS,
-    BOX_OPENING,
-    BOX_ROTATION,
-    BOX_SLIP,
-    ROW_ANGULAR_VELOCITY,
-    ROW_BASE_WORK,
-    ROW_CENTRE_X,
-    ROW_CENTRE_Z,
-    ROW_COLUMNS,
-    ROW_KINETIC,
-    ROW_NORMAL,
-    ROW_ROTATION,
-    ROW_SHEAR,
-    ROW_SLIP,
-    ROW_UPLIFT,
-    STRAIN_WINDOW,
-    RunState,
-    Samples,
-    Stresses,
-)
+from contact.stepping.state import STRAIN_WINDOW, RunState, Samples, Stresses
 
 SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
 
@@ -59,36 +39,38 @@ def write_columns(
         a, b = old.boxes[0], new.boxes[0]
     floor, _, _ = floor_motion(run.problem.motion, time)
     lift, _, _ = floor_motion(run.problem.vertical, time)
-    row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
-    row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
-    row[ROW_SLIP] = run.joints[0].slip + s * run.joints[0].shift
-    row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
-    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
-    row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
+    row[state.ROW_ROTATION] = hermite(
+        s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
+    )
+    row[state.ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
+    row[state.ROW_SLIP] = run.joints[0].slip + s * run.joints[0].shift
+    row[state.ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
+    row[state.ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
+    row[state.ROW_UPLIFT], row[state.ROW_NORMAL], row[state.ROW_SHEAR] = 0.0, 0.0, 0.0
     begin, end = points_of(run, 0)
     for i in range(begin, end):
         if i < run.problem.control.base_points:
             gap = (1.0 - s) * old.point[i, 1] + s * new.point[i, 1]
-            row[ROW_UPLIFT] = max(row[ROW_UPLIFT], gap - run.problem.contact.camber[i])
-        row[ROW_SHEAR] += force[i, 0]
-        row[ROW_NORMAL] += force[i, 1]
+            row[state.ROW_UPLIFT] = max(row[state.ROW_UPLIFT], gap - run.problem.contact.camber[i])
+        row[state.ROW_SHEAR] += force[i, 0]
+        row[state.ROW_NORMAL] += force[i, 1]
     if loose is not None:
         for j in range(1, run.joints.shape[0]):
-            joint, first = run.joints[j], ROW_COLUMNS + BOX_COLUMNS * (j - 1)
+            joint, first = run.joints[j], state.ROW_COLUMNS + state.BOX_COLUMNS * (j - 1)
             p, q = run.old.boxes[j], run.attempt.new.boxes[j]
-            row[first + BOX_ROTATION] = hermite(
+            row[first + state.BOX_ROTATION] = hermite(
                 s, step, p[ROTATION], p[ANGULAR_VELOCITY], q[ROTATION], q[ANGULAR_VELOCITY]
             )
-            row[first + BOX_SLIP] = joint.slip + s * joint.shift
-            row[first + BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
+            row[first + state.BOX_SLIP] = joint.slip + s * joint.shift
+            row[first + state.BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
             for k in range(2):
                 x, v = CENTRE_X + k, VELOCITY_X + k
-                row[first + BOX_CENTRE_X + k] = hermite(s, step, p[x], p[v], q[x], q[v])
-                row[first + BOX_CENTRE_X + k] -= floor if k == 0 else lift
+                row[first + state.BOX_CENTRE_X + k] = hermite(s, step, p[x], p[v], q[x], q[v])
+                row[first + state.BOX_CENTRE_X + k] -= floor if k == 0 else lift
     for k in range(3):
-        row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
+        row[state.ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
     for k in range(LEDGER_ROWS):
-        row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.attempt.change[k]
+        row[state.ROW_BASE_WORK + k] = run.ledger[k] + s * run.attempt.change[k]
 
 
 @inlined

@@ -10,37 +10,15 @@ from typing import Any
 from contact.arrays import FloatArray
 from contact.interface.laws import relaxed_stick, rolling_lead, stribeck_mu
 from contact.interface.solver import solve_contact
-from contact.interface.workspace import Contact, Workspace
+from contact.interface.workspace import Contact
 from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, floor_motion, rare_motion
-from contact.stepping.body import (
-    CENTRE_Z,
-    KINETIC,
-    POTENTIAL,
-    ROTATION,
-    STRAIN,
-    Ground,
-    State,
-    complete,
-    predict,
-    release,
-    respond,
-    stands_loose,
-)
-from contact.stepping.joints import in_a_row, points_of, rub_apart
-from contact.stepping.ledger import (
-    BASE_WORK,
-    CONTACT_DAMPING,
-    CRUSHING,
-    FRICTION,
-    IMBALANCE,
-    IMPACTS,
-    MATERIAL_DAMPING,
-    contact_losses,
-    spring_energy,
-    work_of_lift,
-)
-from contact.stepping.links import LinkedBody, links_of, push_of_links
+from contact.stepping import body as interface
+from contact.stepping import ledger
+from contact.stepping.body import Ground
+from contact.stepping.joints import in_a_row, points_of
+from contact.stepping.ledger import contact_losses, spring_energy, work_of_lift
+from contact.stepping.links import LinkedBody, push_of_links
 from contact.stepping.state import RunState
 
 FLIGHT = 1e-3  #: gap over half the width from which a base that rolls has left the floor
@@ -63,29 +41,6 @@ def indent(contact: Contact, point: FloatArray, crushed: FloatArray) -> None:
 
 
 @compiled(inline=True)
-def crush(contact: Contact, step: float, old: State, new: State, work: Workspace) -> None:
-    """Indent the floor under the points that reached their cap; `new.point` holds their heights.
-
-    As the slider of a stick, a plastic slider keeps spring and dashpot at the cap: they relax, and what the point has
-    moved besides indents the floor.
-    """
-    for i in range(new.point.shape[0]):
-        indented = old.crushed[i]
-        new.point[i, 1] += contact.camber[i]
-        if work.law[i, 1] >= work.cap[i]:
-            elastic = relaxed_stick(
-                max(0.0, -old.point[i, 1]),
-                work.cap[i],
-                contact.normal_stiffness[i],
-                contact.relaxation_time[i],
-                step,
-            )
-            indented = max(indented, -new.point[i, 1] - elastic)
-        new.crushed[i] = indented
-        new.point[i, 1] += indented
-
-
-@compiled(inline=True)
 def rolling_share(run: RunState, step: float) -> float:
     """Couple that resists the rolling at the end of a step, over the sum of squared lever arms [N/m].
 
@@ -104,7 +59,7 @@ def rolling_share(run: RunState, step: float) -> float:
         rate += arm * old.descent[i, 0]
         rise += arm * old.descent[i, 1]
     rate, rise = rate / square, rise / square
-    rotation = old.pose[ROTATION] + step * (rate + 0.5 * step * rise)
+    rotation = old.pose[interface.ROTATION] + step * (rate + 0.5 * step * rise)
     lead = rolling_lead(
         rotation,
         rate + step * rise,
@@ -116,7 +71,7 @@ def rolling_share(run: RunState, step: float) -> float:
         return 0.0
     upward = run.lift[1, 2]
     if abs(contact.rolling_radius * rotation) < contact.rolling_reach:
-        upward += (contact.rolling_radius - (old.pose[CENTRE_Z] - run.lift[0, 0])) * rate * rate
+        upward += (contact.rolling_radius - (old.pose[interface.CENTRE_Z] - run.lift[0, 0])) * rate * rate
     return control.mass * (control.gravity + upward) * lead / square
 
 
@@ -127,20 +82,6 @@ def middle_of(point: FloatArray, n: int) -> float:
     for i in range(n):
         middle += point[i, 0]
     return middle / n
-
-
-@compiled(inline=True)
-def push_rolling(run: RunState, share: float, slope: float) -> None:
-    """Move the points without contact force by the couple of rolling; `slope` is that of their velocities [1/s]."""
-    work, point, n = run.work, run.old.point, run.problem.control.base_points
-    middle = middle_of(point, n)
-    for i in range(work.free.shape[0]):
-        for a in range(2):
-            moved = 0.0
-            for j in range(n):
-                moved += work.compliance[2 * i + a, 2 * j + 1] * share * (point[j, 0] - middle)
-            work.free[i, a] += moved
-            work.free_velocity[i, a] += slope * moved
 
 
 @compiled(inline=True)
@@ -170,7 +111,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
         for k in range(old.acceleration.size):
             old.acceleration[k] += shift * old.jerk[k]
     clock.lag_step = step
-    predict(body, scheme, step, old, new)
+    interface.predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
     contact = run.problem.contact
     for i in range(work.cap.size):  # constant within the step
@@ -183,21 +124,33 @@ def attempt(body: Any, run: RunState, step: float) -> int:
             work.mu[i] = stribeck_mu(
                 run.joints[j].mu, contact.mu_kinetic[i], contact.stribeck_velocity, velocity
             )
-    rub_apart(run, stands_loose(body), links_of(body))
+    # that of the points of no joint, those of links and sides, does not change
+    for i in range(points_of(run, run.joints.shape[0] - 1)[1], work.mu.size):
+        work.mu[i] = contact.mu_static[i]
     rolls = contact.rolling_time > 0.0
-    clock.rolling = rolling_share(run, step) if rolls else 0.0
+    rolling = rolling_share(run, step) if rolls else 0.0
+    clock.rolling = rolling
     for iteration in range(ITERATION_LIMIT):
-        release(body, scheme, step, old, new, work, ground)
+        interface.release(body, scheme, step, old, new, work, ground)
         indent(contact, work.free, old.crushed)
-        if rolls:
-            push_rolling(run, clock.rolling, slope)
+        if rolls:  # the couple of rolling moves the points
+            base = run.problem.control.base_points
+            middle = middle_of(old.point, base)
+            for i in range(work.free.shape[0]):
+                for a in range(2):
+                    moved = 0.0
+                    for j in range(base):
+                        arm = old.point[j, 0] - middle
+                        moved += work.compliance[2 * i + a, 2 * j + 1] * rolling * arm
+                    work.free[i, a] += moved
+                    work.free_velocity[i, a] += slope * moved
         solved = solve_contact(contact, step, slope, old.point, old.stick, work)
         if solved < 0:
             return -1
         clock.contact_iterations += solved
         if rolls:
-            add_rolling(run, clock.rolling, work.force)
-        converged = respond(body, scheme, step, old, new, work) <= 1.0
+            add_rolling(run, rolling, work.force)
+        converged = interface.respond(body, scheme, step, old, new, work) <= 1.0
         if converged:
             copy_rows(new.force, work.force)
             per_second = 1.0 / step
@@ -208,12 +161,27 @@ def attempt(body: Any, run: RunState, step: float) -> int:
                 new.drift[i, 1] = (new.drift[i, 0] - old.drift[i, 0]) * per_second
             for k in range(new.jerk.size):
                 new.jerk[k] = (new.acceleration[k] - old.acceleration[k]) * per_second
-            complete(body, new, floor, lift, lift_velocity)
+            interface.complete(body, new, floor, lift, lift_velocity)
         if rolls:
-            add_rolling(run, -clock.rolling, work.force)
+            add_rolling(run, -rolling, work.force)
             copy_rows(new.force, work.force)
         if converged:
-            crush(contact, step, old, new, work)
+            # As the slider of a stick, a plastic slider keeps spring and dashpot at the cap: they relax, and what the
+            # point has moved besides indents the floor.
+            for i in range(new.point.shape[0]):
+                indented = old.crushed[i]
+                new.point[i, 1] += contact.camber[i]
+                if work.law[i, 1] >= work.cap[i]:
+                    elastic = relaxed_stick(
+                        max(0.0, -old.point[i, 1]),
+                        work.cap[i],
+                        contact.normal_stiffness[i],
+                        contact.relaxation_time[i],
+                        step,
+                    )
+                    indented = max(indented, -new.point[i, 1] - elastic)
+                new.crushed[i] = indented
+                new.point[i, 1] += indented
             return iteration + 1
     return -1
 
@@ -246,16 +214,16 @@ def account(run: RunState, step: float, loose: bool | None, links: LinkedBody | 
             loss += share * (old.point[i, 0] - middle) * sunk
         damping += loss
     stored = spring_energy(run.problem.contact, new.point, new.stick) - before
-    for row in (KINETIC, STRAIN, POTENTIAL):
+    for row in (interface.KINETIC, interface.STRAIN, interface.POTENTIAL):
         stored += new.energy[row] - old.energy[row]
-    change[BASE_WORK] = (shear + run.problem.control.mass * run.problem.control.downhill) * (
+    change[ledger.BASE_WORK] = (shear + run.problem.control.mass * run.problem.control.downhill) * (
         run.floor[1, 0] - run.floor[0, 0]
     )
-    change[BASE_WORK] += work_of_lift(run.problem.control.mass, old.pose, new.pose, run.lift, step)
-    change[FRICTION] = friction
-    change[CONTACT_DAMPING] = damping
-    change[MATERIAL_DAMPING] = material
-    change[CRUSHING] = crushing
-    change[IMPACTS] = 0.0
-    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - crushing - stored
+    change[ledger.BASE_WORK] += work_of_lift(run.problem.control.mass, old.pose, new.pose, run.lift, step)
+    change[ledger.FRICTION] = friction
+    change[ledger.CONTACT_DAMPING] = damping
+    change[ledger.MATERIAL_DAMPING] = material
+    change[ledger.CRUSHING] = crushing
+    change[ledger.IMPACTS] = 0.0
+    change[ledger.IMBALANCE] = change[ledger.BASE_WORK] - friction - damping - material - crushing - stored
     return friction + damping + material

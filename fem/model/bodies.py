@@ -16,16 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from contact.interface.contact_points import ASIDE
-from contact.interface.faces import CORNERS, place_points, weigh_points
+from contact.interface.faces import ASIDE, CORNERS, place_points, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.stepping.body import State, make_state
 from contact.stepping.boxes import POINTS_OF_GAP
-from contact.stepping.loose_stack import LooseStack
+from contact.stepping.loose_stack import LooseStack, make_stack, settle_stack, start_stack
 from contact.stepping.modal_body import ModalBody, make_modal_body
-from contact.stepping.stack_body import make_stack, settle_stack, start_stack
 from fem.case.case import Case, CaseError
 from fem.case.tables.boxes import shared_face
 from fem.case.tables.neighbours import places_of

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact.interface.contact_points import make_faces, make_row
-from contact.interface.faces import TOUCHING
+from contact.interface.faces import TOUCHING, make_faces, make_row
 from contact.interface.support import Support
 from fem.case.case import Case
 from fem.case.tables.neighbours import Places, places_of

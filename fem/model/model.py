@@ -11,7 +11,7 @@ import numpy as np
 
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
-from contact.stepping import modal_kernels
+from contact.stepping import modal_body
 from contact.stepping.body import State, make_state
 from contact.stepping.control import step_level
 from contact.stepping.ledger import spring_energy
@@ -299,6 +299,6 @@ def _begun(
         own.place(state, stance, container.response)
         own.start(state, *floor)
     else:
-        modal_kernels.place(own, state, stance)
-        modal_kernels.start(own, state, *floor)
+        modal_body.place(own, state, stance)
+        modal_body.start(own, state, *floor)
     return state

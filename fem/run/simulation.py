@@ -270,7 +270,7 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
         run = run._replace(buffers=run.buffers._replace(history=samples))
     if recovery is None:  # nobody looks at the steps that strain it most
         run = run._replace(strained=run.strained[:, :0].copy())
-    status, kept = run_to_end(
+    status, slip = run_to_end(
         model.body,
         run,
         duration,
@@ -282,10 +282,10 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
     interval = run.buffers.history.interval
     count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
-    numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
+    numbers = np.arange(max(0, last + 1 - slip.size), last + 1)
     stress = None if recovery is None else recovery.largest_of_steps(run.strained)
     end = (count - 1) * interval if count else None
-    verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
+    verdict = verdict_from(model, end, numbers * interval, slip[numbers % slip.size], stress)
     if status == FAILED:
         return verdict, stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
     return verdict, audit(model)

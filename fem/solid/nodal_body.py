@@ -15,18 +15,16 @@ import numpy as np
 import scipy.sparse.linalg
 from scipy.sparse import csr_array
 
-from contact.interface.contact_points import SidePoint, make_faces
 from contact.interface.equilibrium import Stance
-from contact.interface.faces import CORNERS
+from contact.interface.faces import CORNERS, SidePoint, make_faces
 from contact.interface.workspace import Contact, make_workspace
 from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, enter_floor_frame_compiled
 from contact.stepping.links import LinkedBody
-from contact.stepping.loose_stack import LooseStack
+from contact.stepping.loose_stack import LooseStack, stand, state_of
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.scheme import Scheme
-from contact.stepping.stack_body import stand, state_of
 from contact.stepping.state import RunState
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
@@ -287,7 +285,7 @@ class FullStack:
         velocity: tuple[float, float] = (0.0, 0.0),
         lift_velocity: float = 0.0,
     ) -> None:
-        """Write the initial state, as `contact.stepping.stack_body.settle_stack`."""
+        """Write the initial state, as `contact.stepping.loose_stack.settle_stack`."""
         centre = np.array([box.centroid for box in self.boxes])
         point = np.array([box.elements.nodes[box.base] - box.centroid for box in self.boxes])
         downhill = self.boxes[0].downhill
@@ -302,7 +300,7 @@ class FullStack:
         )
         force = rest.corner_force.reshape(-1, CORNERS, 2)
         for b, (box, response) in enumerate(zip(self.boxes, self._responses, strict=True)):
-            own = state_of(self.stack.body, state, b)
+            own = state_of(self.stack, state, b)
             turn = rotation_matrix(float(rest.rotation[b]))
             elastic = np.tensordot((force[b] @ turn).ravel(), response.displacement, axes=1)
             arm = (box.elements.nodes - box.centroid + elastic) @ turn.T
@@ -311,7 +309,7 @@ class FullStack:
             box.evaluate(own)
         complete_nodal_stack(self.stack, state, place[0], place[1], lift_velocity)
         for b, box in enumerate(self.boxes):
-            own = state_of(self.stack.body, state, b)
+            own = state_of(self.stack, state, b)
             factor = scipy.sparse.linalg.splu(box.elements.mass.tocsc())
             own.acceleration[:] = factor.solve((own.external - own.internal).reshape(-1, 2)).ravel()
 

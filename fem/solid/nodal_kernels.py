@@ -16,7 +16,6 @@ from contact.interface.compliance import add_turned
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
-from contact.stepping import stack_body
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
     CENTRE_X,
@@ -34,8 +33,8 @@ from contact.stepping.body import (
     implements,
 )
 from contact.stepping.integrator import advance, enter_floor_frame
+from contact.stepping.loose_stack import box_of, complete_compiled
 from contact.stepping.scheme import Scheme
-from contact.stepping.stack_body import complete_compiled
 from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.block_factor import BlockPattern, substitute_blocks
@@ -345,24 +344,10 @@ class NodalStack(NamedTuple):
     energy: FloatArray  #: (N, 3) scratch
 
 
-@implements(stack_body.box_of, NodalStack, inline=True)
-def box_of(stack: NodalStack, b: int) -> NodalBody:
+@implements(box_of, NodalStack, inline=True)
+def nodal_box(stack: NodalStack, b: int) -> NodalBody:
     """One of the boxes."""
     return stack.boxes[b]
-
-
-for operation in ("predict", "release", "respond", "complete", "observe", "shift_velocity"):
-    implements(getattr(interface, operation), NodalStack)(getattr(stack_body, operation))
-
-
-@compiled(sources=SOURCES)
-@implements(interface.prepared, NodalStack)
-def prepared_stack(stack: NodalStack, step: float) -> bool:
-    """The factors of this step size are at hand for all boxes."""
-    ready = True
-    for b in range(len(stack.boxes)):
-        ready = ready and prepared(stack.boxes[b], step)
-    return ready
 
 
 complete_nodal_stack = compiled(complete_compiled.py_func, sources=SOURCES)

@@ -20,8 +20,7 @@ from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion, floor
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.body import make_state
 from contact.stepping.control import most_attempts
-from contact.stepping.modal_body import ModalBody, make_modal_body
-from contact.stepping.modal_kernels import place, start
+from contact.stepping.modal_body import ModalBody, make_modal_body, place, start
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.scheme import Scheme, generalised_alpha
 from contact.stepping.state import ROW_ROTATION, ROW_SLIP, Control, RunState, make_run, make_samples

@@ -14,7 +14,7 @@ import numpy as np
 from contact.interface.equilibrium import Stance
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
-from contact.stepping import modal_kernels
+from contact.stepping import modal_body
 from contact.stepping.modal_body import ModalBody
 from fem.case.case import Case, read_case
 from fem.model.container import Container
@@ -167,7 +167,7 @@ def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = (
     state.position[0] += floor - before
     state.velocity[0] += speed - speed_before
     model.run.floor[:] = floor, speed, acceleration
-    modal_kernels.start(_modal(model), state, floor, 0.0, 0.0)
+    modal_body.start(_modal(model), state, floor, 0.0, 0.0)
     ends = np.array([*breaks, model.duration, np.inf])
     return replace(model, run=model.run.with_problem(motion=motion, breaks=ends))
 
@@ -190,8 +190,8 @@ def placed(model: Model, stance: Stance) -> Model:
     state = model.run.old
     state.force[:] = 0.0
     state.stick[:] = 0.0
-    modal_kernels.place(_modal(model), state, stance)
-    modal_kernels.start(_modal(model), state, float(model.run.floor[0, 0]), 0.0, 0.0)
+    modal_body.place(_modal(model), state, stance)
+    modal_body.start(_modal(model), state, float(model.run.floor[0, 0]), 0.0, 0.0)
     return model
 
 

@@ -10,16 +10,15 @@ from block_on_floor import GRAVITY, Block, Motion, limits_of
 from contacts import contact_of
 
 from contact.arrays import FloatArray
-from contact.interface.contact_points import points_of_joint
+from contact.interface.faces import points_of_joint
 from contact.motion.base_motion import NoMotion
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import make_state
 from contact.stepping.control import most_attempts
-from contact.stepping.loose_stack import LooseStack
+from contact.stepping.loose_stack import LooseStack, make_stack, settle_stack
 from contact.stepping.modal_body import make_modal_body
 from contact.stepping.outcome import advance_compiled
 from contact.stepping.scheme import generalised_alpha
-from contact.stepping.stack_body import make_stack, settle_stack
 from contact.stepping.state import ROW_COLUMNS, RunState, make_joints, make_run, make_samples
 
 

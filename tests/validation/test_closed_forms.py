@@ -77,7 +77,7 @@ def test_initiation_modes_on_a_grid():
             floor = rectangular_pulse(peak=sign * ratio * GRAVITY, duration=0.1, delay=0.05)
             motion = simulate_planar_block(block, floor, duration=0.06)
             end = motion.at(np.array([0.06]))
-            modes = (transition.state.mode for transition in motion.transitions)
+            modes = (state.mode for state in motion.states)
             first = next((mode for mode in modes if mode is not PlanarMode.REST), PlanarMode.REST)
             assert first is expected, (lam, ratio, mu_static, mu_kinetic)
             slides = expected in (PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK)

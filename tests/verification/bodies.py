@@ -13,7 +13,7 @@ from runs import STACK, with_steps_of
 
 from contact.interface.equilibrium import Stance
 from contact.motion.kernel import UNIFORM, as_floor_motion
-from contact.stepping import modal_kernels
+from contact.stepping import modal_body
 from contact.stepping.body import State, make_state
 from contact.stepping.integrator import REACHED
 from contact.stepping.modal_body import ModalBody
@@ -116,9 +116,9 @@ def free_run(
             old.velocity[:] = velocity.ravel()
         body.start(old, 0.0)
     else:
-        modal_kernels.place(body, old, stance)
+        modal_body.place(body, old, stance)
         old.position[3:] = modal_position
-        modal_kernels.start(body, old, 0.0, 0.0, 0.0)
+        modal_body.start(body, old, 0.0, 0.0, 0.0)
     samples = coordinates if isinstance(body, ModalBody) else 0
     run = make_run(
         scheme=scheme,

@@ -5,11 +5,11 @@ import pytest
 from contacts import contact_of
 
 from contact.arrays import FloatArray
-from contact.interface.contact_points import make_faces
 from contact.interface.faces import (
     Faces,
     condense_points,
     linearise_points,
+    make_faces,
     place_points,
     share_forces,
     weigh_points,
@@ -158,25 +158,19 @@ def test_forces_do_not_jump_where_corners_pass_the_edge_of_a_face():
     assert np.abs(np.diff(moments)).max() < 1e-5 * np.abs(moments).max()
 
 
-def test_a_corner_that_comes_from_beside_a_face_is_not_on_it():
+def test_a_corner_is_on_a_face_where_it_was_there_or_slides_onto_it():
     start = undeformed([(1.0, 1.0), (1.0, 1.0)])
     faces = faces_of(start)
-    contact = contact_at(faces)
-    corners = start.copy()
-    corners[4:] += [0.3, -0.01]  # the left corner on the face, far too deep
-    away = np.full((6, 2), 1.0)  # gaps of the length of the face: all points were off their faces
-    weigh_points(faces, corners, away, contact)
+    contact, deep, slid = contact_at(faces), start.copy(), start.copy()
+    deep[4:] += [0.3, -0.01]  # the left corner on the face, far too deep
+    slid[4:] += [0.3, -1e-5]
+    weigh_points(
+        faces, deep, np.full((6, 2), 1.0), contact
+    )  # gaps of the length of the face: all were off theirs
     assert faces.weight[2] == 0.0
-    weigh_points(faces, corners, np.zeros((6, 2)), contact)
+    weigh_points(faces, deep, np.zeros((6, 2)), contact)
     assert faces.weight[2] == 1.0  # it was on the face before
-
-
-def test_a_corner_that_slides_onto_a_face_takes_over_where_it_is():
-    start = undeformed([(1.0, 1.0), (1.0, 1.0)])
-    faces = faces_of(start)
-    corners = start.copy()
-    corners[4:] += [0.3, -1e-5]
-    points = np.full((6, 2), 1.0)  # all were off their faces
-    weigh_points(faces, corners, points, contact_at(faces))
+    points = np.full((6, 2), 1.0)
+    weigh_points(faces, slid, points, contact)  # it takes over where it is
     assert points[2] == pytest.approx([0.3 + faces.origin[2], -1e-5], abs=1e-12)
     assert faces.weight[4] == 0.0 and points[4, 1] == 1.0  # the right one is beside it

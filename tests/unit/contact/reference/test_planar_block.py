@@ -80,7 +80,7 @@ def test_endless_impacts_end_in_rest_or_in_sliding():
     still = simulate_planar_block(
         PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4), still_floor(), duration=20.0, rotation=0.1
     )
-    assert still.transitions[-1].state.mode is PlanarMode.REST
+    assert still.states[-1].mode is PlanarMode.REST
     # pushed along on slippery ground, it stops rocking before it stops sliding
     pushed = simulate_planar_block(
         PlanarBlock(body=BOX, mu_static=0.1, mu_kinetic=0.1),
@@ -89,7 +89,7 @@ def test_endless_impacts_end_in_rest_or_in_sliding():
         rotation=0.02,
         slip_velocity=2.0,
     )
-    names = [transition.state.mode for transition in pushed.transitions]
+    names = [state.mode for state in pushed.states]
     assert names[-2:] == [PlanarMode.SLIDE, PlanarMode.REST]
 
 

@@ -68,15 +68,6 @@ def test_the_filter_is_butterworths_of_second_order(motion: Motion, step: float,
     assert largest == pytest.approx(peak, rel=max(within, 2e-3))
 
 
-def test_the_error_is_of_fourth_order_in_the_step() -> None:
-    errors = []
-    for step in (4e-3, 2e-3, 1e-3):
-        times = np.arange(0.0, END, step)
-        errors.append(np.abs(filtered(SMOOTH, times)[0] - by_scipy(SMOOTH, times)[0]).max())
-    assert errors[1] < errors[0] / 8.0
-    assert errors[2] < errors[1] / 8.0
-
-
 @pytest.mark.parametrize("model", ["rigid", pytest.param("reduced", marks=pytest.mark.slow)])
 def test_the_acceleration_does_not_depend_on_the_intervals_of_the_output(model: str) -> None:
     case = load_case("rocking", (f"solver.model={model}", "solver.duration_s=1.5", "output.fields_s=0"))

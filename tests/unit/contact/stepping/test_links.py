@@ -8,7 +8,6 @@ import pytest
 from contact.interface.workspace import Workspace, make_workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
-from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import State, make_state
 from contact.stepping.links import LinkedBody, make_lines
 from contact.stepping.modal_body import make_modal_body

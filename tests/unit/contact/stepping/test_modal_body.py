@@ -10,8 +10,16 @@ import pytest
 
 from contact.interface.workspace import Workspace, make_workspace
 from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, Ground, State, make_state
-from contact.stepping.modal_body import ModalBody, make_modal_body
-from contact.stepping.modal_kernels import complete, gather_force, observe, predict, release, respond
+from contact.stepping.modal_body import (
+    ModalBody,
+    complete,
+    gather_force,
+    make_modal_body,
+    observe,
+    predict,
+    release,
+    respond,
+)
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 
 MASS, INERTIA, GRAVITY = 1e4, 1.434e4, 9.81

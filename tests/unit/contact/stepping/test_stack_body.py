@@ -5,12 +5,12 @@ import pytest
 from block_on_floor import GRAVITY
 from stack_on_floor import Box, joint_force, stack_rig
 
-from contact.interface.contact_points import points_of_joint
 from contact.interface.equilibrium import SettlingError
+from contact.interface.faces import points_of_joint
 from contact.motion.base_motion import HarmonicMotion
 from contact.stepping.ledger import BASE_WORK, IMBALANCE, dissipation, spring_energy
+from contact.stepping.loose_stack import stack_with_own_scratch
 from contact.stepping.outcome import run_to_end
-from contact.stepping.stack_body import stack_with_own_scratch
 
 SHAKE = HarmonicMotion(amplitude=6.0 / 6.928**2, angular_frequency=6.928, duration=20.0)
 #: two modes of a box: its corners spread, and it shears
