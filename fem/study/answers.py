@@ -135,13 +135,7 @@ def is_rising(axis: Axis, trials: Iterable[Trial]) -> bool:
 
 
 def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None = None) -> Answer:
-    """The answer of some lines together.
-
-    Args:
-        trials: of all these lines, in any order.
-        rising: the smaller values are the safe ones.
-        limit_slip: beyond which a run does not stand [m]; None: none.
-    """
+    """The answer of all trials of some lines together; a run that slides beyond `limit_slip` [m] does not stand."""
 
     def falls(trial: Trial) -> bool:
         slid = limit_slip is not None and trial.kind == Ending.STANDING and (trial.slip or 0.0) > limit_slip
@@ -156,7 +150,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool, limit_slip: float | None
     fallen = [value for value in values if any(map(falls, at[value]))]
     stands = [kinds[value] == {Ending.STANDING} and value not in fallen for value in values]
     first = values.index(fallen[0]) if fallen else len(values)
-    upright = stands.index(False) if False in stands else len(values)
+    upright = [*stands, False].index(False)
     fell = [trial for trial in at[fallen[0]] if falls(trial)] if fallen else []
     overturned = [trial for trial in fell if trial.kind == Ending.OVERTURNED]
     invalid = [trial for trial in fell if trial.kind == Ending.INVALID]
@@ -208,20 +202,14 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
 
 
 def ends_in_words(answer: Answer, axis: Axis, *, bare: bool = False) -> tuple[str, str]:
-    """Up to where it stood and where it first overturned, with enough figures to differ; empty for none.
-
-    Args:
-        answer, axis: what to say.
-        bare: without the unit.
-    """
-    ends = (answer.stood_to, answer.overturned_from)
-    words = ("", "")
+    """Up to where it stood and where it first overturned, with enough figures to differ; empty for none."""
+    stood = fell = ""
     for figures in range(3, MOST_FIGURES + 1):
+        ends = answer.stood_to, answer.overturned_from
         stood, fell = ("" if end is None else in_words(axis, [end], figures, bare=bare) for end in ends)
-        words = stood, fell
         if stood != fell:
             break
-    return words
+    return stood, fell
 
 
 def ranges_in_words(ranges: Sequence[Range], axis: Axis, *, bare: bool = False) -> str:
@@ -257,33 +245,38 @@ ANSWER_COLUMNS |= dict.fromkeys(("stood_again", "no_outcome", "unsure", "answer"
 
 def answers_csv(answer: StudyAnswer[Answer]) -> str:
     """`answers.csv`: one row for each combination of values of the other axes."""
-
-    def cells(row: AnswerRow[Answer]) -> dict[str, Any]:
+    rows = []
+    for row in answer.rows:
         found = row.found
-        ranges = {"stood_again": found.stood_again, "no_outcome": found.failed, "unsure": found.unsure}
-        words = {key: "; ".join(f"{a!r} to {b!r}" for a, b in spans) for key, spans in ranges.items()}
-        numbers = found.stood_to, found.stood_slip, found.overturned_from, found.slip
-        shown = dict(zip(ANSWER_COLUMNS, numbers, strict=False))
-        return {**row.point, **shown, **words, "answer": row.sentence}
-
+        ranges = found.stood_again, found.failed, found.unsure
+        words = ["; ".join(f"{a!r} to {b!r}" for a, b in spans) for spans in ranges]
+        shown = found.stood_to, found.stood_slip, found.overturned_from, found.slip, *words, row.sentence
+        rows.append({**row.point, **dict(zip(ANSWER_COLUMNS, shown, strict=True))})
     columns = dict.fromkeys((axis.key for axis in answer.others), str) | ANSWER_COLUMNS
-    return table_of_rows(columns, map(cells, answer.rows))
+    return table_of_rows(columns, rows)
 
 
 def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
-    """The answer of a sweep; None where no axis asks for one, or cells are missing.
+    """The answer of a sweep in a folder; None where no axis asks for one, or cells are missing.
 
     The signs of a motion are no rows of their own: a motion stands where it stands with either sign.
-
-    Args:
-        table: of the sweep.
-        folder: where the values are that a threshold tried between the cells.
     """
     wanted = (table.info.threshold or {}).get("axis")
     axis = next((axis for axis in table.axes if axis.key == wanted), None) or answer_axis(table.axes)
     if axis is None or not np.all(table["status"] != ""):
         return None
-    lines = _trials_of(table, axis, folder / TRIED)
+    empty = np.full(len(table["status"]), np.nan), np.full(len(table["status"]), "", dtype=object)
+    slips, unsure = (table.columns.get(name, empty[0]) for name in (SLIPPED, "unsure"))
+    fell, lines = table.columns.get("fell_in_row", empty[1]), defaultdict[int, list[Trial]](list)
+    for line in lines_along(table.axes, axis):
+        for cell, value in zip(line, axis.values, strict=True):
+            kind = ending_of(table["status"][cell], table["outcome"][cell])
+            slip = None if np.isnan(slips[cell]) else float(slips[cell])
+            doubt = None if np.isnan(unsure[cell]) else bool(unsure[cell])
+            lines[line[0]].append(Trial(float(value), line[0], kind, slip, doubt, str(fell[cell])))
+    for row in read_rows(folder / TRIED, TRIED_COLUMNS):  # between the cells, for a threshold
+        kind, fell_first = ending_of(row["status"], row["outcome"]), row["fell_in_row"] or ""
+        lines[row["cell"]].append(Trial(row["value"], row["cell"], kind, row[SLIPPED], fell=fell_first))
     rising = is_rising(axis, [trial for line in lines.values() for trial in line])
     others = [other for other in table.axes if other is not axis and len(other.values) > 1]
 
@@ -315,23 +308,6 @@ def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
     )
 
 
-def _trials_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Trial]]:
-    """What is known along the axis, by the first cell of each line."""
-    empty = np.full(len(table["status"]), np.nan), np.full(len(table["status"]), "", dtype=object)
-    slips, unsure = (table.columns.get(name, empty[0]) for name in (SLIPPED, "unsure"))
-    fell, lines = table.columns.get("fell_in_row", empty[1]), defaultdict[int, list[Trial]](list)
-    for line in lines_along(table.axes, axis):
-        for cell, value in zip(line, axis.values, strict=True):
-            kind = ending_of(table["status"][cell], table["outcome"][cell])
-            slip = None if np.isnan(slips[cell]) else float(slips[cell])
-            doubt = None if np.isnan(unsure[cell]) else bool(unsure[cell])
-            lines[line[0]].append(Trial(float(value), line[0], kind, slip, doubt, str(fell[cell])))
-    for row in read_rows(tried, TRIED_COLUMNS):
-        kind, fell_first = ending_of(row["status"], row["outcome"]), row["fell_in_row"] or ""
-        lines[row["cell"]].append(Trial(row["value"], row["cell"], kind, row[SLIPPED], fell=fell_first))
-    return lines
-
-
 HALF = 0.5
 Row = Mapping[str, Any]  #: of a point, as `ensemble.json` holds it
 
@@ -350,12 +326,11 @@ class HalfPoint:
 def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     """The answer along a strength, else along the axis with the most values.
 
-    Returns:
-        None of an unfinished ensemble, and where no axis has several numbers.
+    None of an unfinished ensemble, and where no axis has several numbers.
     """
     axes = result.axes
-    numeric = sorted((axis for axis in axes if axis.is_numeric), key=lambda axis: -len(axis.values))
-    axis = answer_axis(axes) or next(iter(numeric), None)
+    numeric = (axis for axis in axes if axis.is_numeric)
+    axis = answer_axis(axes) or max(numeric, key=lambda axis: len(axis.values), default=None)
     if axis is None or result.status != COMPLETED:
         return None
     others = tuple(other for other in axes if other is not axis and len(other.values) > 1)
@@ -379,7 +354,12 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
     )
     rows, sorted_lines = [], [points for _, points in sorted(lines.items())]
     for points in sorted_lines:
-        found = _half_point(axis, points)
+        known = [point for point in points if point["probability"] is not None]
+        few = list(takewhile(lambda point: point["region"] == "below", points))
+        value, low, high = (_crossing(axis, known, name) for name in ("probability", "high", "low"))
+        at_once = bool(known) and known[0]["probability"] >= HALF
+        few_to = float(few[-1][axis.key]) if few else None
+        found = HalfPoint(value=value, low=low, high=high, at_once=at_once, few_to=few_to)
         # how far the draws slid that stood, at the points at which fewer than half did not
         before = takewhile(lambda point: (point["probability"] or 0.0) < HALF, points)
         before_half = points if found.value is None else before
@@ -389,40 +369,27 @@ def ensemble_answer(result: EnsembleResult) -> StudyAnswer[HalfPoint] | None:
         rows.append(AnswerRow(point=points[0], found=found, sentence=sentence))
     safest = min if rising else max
     reached = [(row.found.value, k) for k, row in enumerate(rows) if row.found.value is not None]
-    few_to = [row.found.few_to for row in rows if row.found.few_to is not None]
+    ends = [row.found.few_to for row in rows if row.found.few_to is not None]
     sentence = rows[0].sentence
     if others:
         _, k = safest(reached) if reached else (None, 0)
         first, where = (rows[k].found, place_in_words(others, rows[k].point)) if reached else (None, "")
-        few = safest(few_to) if len(few_to) == len(rows) else None
-        sentence = says(points=sorted_lines[k], found=first, few_to=few, where=where, slip="")
+        end = safest(ends) if len(ends) == len(rows) else None
+        sentence = says(points=sorted_lines[k], found=first, few_to=end, where=where, slip="")
     return StudyAnswer(
         axis=axis, rising=rising, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
     )
 
 
-def _half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
-    """Where half of the draws overturn along a line of points, sorted from the side where fewer do."""
-    known = [point for point in points if point["probability"] is not None]
-
-    def crossing(name: str) -> float | None:
-        """Where straight lines through the points first pass one half; the first value where it lies above already."""
-        pairs = [(float(point[axis.key]), float(point[name])) for point in known]
-        for (before, less), (after, more) in pairwise([*pairs[:1], *pairs]):
-            if less >= HALF:
-                return before
-            if more >= HALF:
-                return before + (after - before) * (HALF - less) / (more - less)
-        return None
-
-    few = list(takewhile(lambda point: point["region"] == "below", points))
-    return HalfPoint(
-        value=crossing("probability"),
-        low=crossing("high"),
-        high=crossing("low"),
-        at_once=bool(known) and known[0]["probability"] >= HALF,
-        few_to=float(few[-1][axis.key]) if few else None,
-    )
+def _crossing(axis: Axis, known: Iterable[Row], name: str) -> float | None:
+    """Where straight lines through points first pass one half; the first value where it lies above already."""
+    pairs = [(float(point[axis.key]), float(point[name])) for point in known]
+    for (before, less), (after, more) in pairwise([*pairs[:1], *pairs]):
+        if less >= HALF:
+            return before
+        if more >= HALF:
+            return before + (after - before) * (HALF - less) / (more - less)
+    return None
 
 
 def interval_in_words(axis: Axis, crossing: HalfPoint, *, rising: bool) -> str:

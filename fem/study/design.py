@@ -46,20 +46,14 @@ class CaseMaker:
     """Makes `base.with_values(values)`, at a tenth of the cost, and the cases of a study.
 
     Only the tables that change and the rules of the whole case are checked again; a case that breaks one is made the
-    long way, which names the error.
-
-    Args:
-        base: the case that is varied.
-        derived: keys that follow others.
-        relative: keys that are drawn as a factor on the value that they have anyway.
+    long way, which names the error. `derived` keys follow others; `relative` ones are drawn as factors on the value
+    that they have anyway.
     """
 
     def __init__(
         self, base: Case, derived: Mapping[str, Expression] = {}, relative: Collection[str] = ()
     ) -> None:
-        self.base = base
-        self._derived, self._relative = derived, relative
-        self._kinds = base.kinds
+        self.base, self._kinds, self._derived, self._relative = base, base.kinds, derived, relative
         #: by the keys that are set: what does not change, and the content of the tables that do
         self._templates: dict[tuple[str, ...], tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {}
 
@@ -220,17 +214,28 @@ class DesignResult(StudyResult):
     limit_slip_m: float | None = None  #: beyond which a run does not stand, and counts as one that overturned
 
 
+#: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
+Unknown = Literal["drawn", "held"]
+STREAM = 1  #: of random numbers of the unknown inputs
+
+
+def sets_among(random: Iterable[RandomQuantity]) -> list[Axis]:
+    """The set of motions among what is random, as a list of one or none."""
+    return [one.choices for one in random if one.choices is not None and one.key == MOTION_FILE]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Design:
-    """A base case, points on axes, and keys that follow; what is drawn at a point is of an `Ensemble`."""
+    """A base case, points on axes, what is random at a point, and keys that follow."""
 
     name: str  #: stem of the file, or name of the shipped study
     text: str = ""  #: of the file
     title: str = ""
     base: Case  #: with the keys of [set]
     axes: tuple[Axis, ...] = ()
+    random: tuple[RandomQuantity, ...] = ()
+    unknown_inputs: Unknown = "held"
     derived: Mapping[str, Expression] = field(default_factory=dict)  #: each behind what it refers to
-    relative: frozenset[str] = frozenset()  #: keys that are drawn as factors
     limit_slip_m: float | None = None  #: beyond which a run does not stand
 
     @property
@@ -254,7 +259,8 @@ class Design:
     @cached_property
     def make(self) -> CaseMaker:
         """Makes the cases of runs; picklable, and small."""
-        return CaseMaker(self.base.without_fields(), self.derived, self.relative)
+        relative = frozenset(quantity.key for quantity in self.random if quantity.relative)
+        return CaseMaker(self.base.without_fields(), self.derived, relative)
 
     def case(self, cell: int) -> Case:
         """The case of a point."""
@@ -267,8 +273,20 @@ class Design:
 
     @property
     def varied(self) -> set[str]:
-        """Keys that vary by themselves."""
-        return {*self.axis_keys}
+        """Keys that vary by themselves: of the axes, and what is random."""
+        return {*self.axis_keys, *(quantity.key for quantity in self.random)}
+
+    @cached_property
+    def unknown(self) -> tuple[str, ...]:
+        """Keys of the unknown inputs that are drawn over their ranges in [uncertainty] of the case.
+
+        What the file varies itself, by [axes], [random] or [derived], stays as it is there.
+        """
+        if self.unknown_inputs == "held":
+            return ()
+        ranges = (interval for case in self.cases for interval in ranges_of(case, penalty_of(case)))
+        drawn = {interval.key for interval in ranges if interval.drawn is not None}
+        return tuple(key for key in INPUTS if key in drawn - {*self.varied, *self.derived})
 
     @property
     def runs(self) -> Callable[..., LoggedRuns[Item]]:
@@ -277,8 +295,8 @@ class Design:
 
     @property
     def held(self) -> str:
-        """What is held fixed of the unknown inputs, in words."""
-        return held_inputs(self.cases, self.varied)
+        """What is held fixed of the unknown inputs that are not drawn, in words."""
+        return held_inputs(self.cases, {*self.varied, *self.unknown})
 
     @property
     def asked(self) -> dict[str, Any]:
@@ -294,12 +312,21 @@ class Design:
             "limit_slip_m": self.limit_slip_m,
         }
 
-    def corners(self, *, listed: bool = False) -> Iterator[Item]:
-        """Runs at the ends of each axis; `listed`: at every value of one that the file lists."""
+    def corners(
+        self, *, listed: bool = False, drawn: Sequence[tuple[Any, ...]] | None = None
+    ) -> Iterator[Item]:
+        """Runs at the ends of each axis; of what is random at these values, or in the middle and at the ends.
+
+        `listed`: at every value of an axis that the file lists.
+        """
         steps = (1 if listed and axis.scale == "list" else len(axis.values) - 1 or 1 for axis in self.axes)
         ends = [axis.values[::step] for axis, step in zip(self.axes, steps, strict=True)]
-        for corner in product(*ends):
-            yield Item(0, 0, with_following(self.axes, dict(zip(self.axis_keys, corner, strict=True))))
+        shares = np.array([0.5, 0.0, 1.0])
+        drawn = drawn or [*zip(*(one.values(shares) for one in self.random), strict=True)] or [()]
+        for corner, values in product(product(*ends), drawn):
+            point = with_following(self.axes, dict(zip(self.axis_keys, corner, strict=True)))
+            own = dict(zip((one.key for one in self.random), values, strict=True))
+            yield Item(0, 0, point, with_following(sets_among(self.random), own))
 
     @cached_property
     def cases(self) -> list[Case]:
@@ -343,54 +370,21 @@ class Sweep(Design):
         return chosen != "none" and (chosen != "auto" or self.base.solver.model != "full")
 
 
-#: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
-Unknown = Literal["drawn", "held"]
-STREAM = 1  #: of random numbers of the unknown inputs
-
-
-def sets_among(random: Iterable[RandomQuantity]) -> list[Axis]:
-    """The set of motions among what is random, as a list of one or none."""
-    return [one.choices for one in random if one.choices is not None and one.key == MOTION_FILE]
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Ensemble(Design):
     """What an ensemble file asks for."""
 
-    random: tuple[RandomQuantity, ...]
     draws: int  #: at each point
     seed: int
     sampling: Sampling
     replicates: int  #: 1 for independent draws; of a set of motions one for each
     confidence: float
     probability: float  #: of overturning, to which the points are compared
-    unknown_inputs: Unknown = "drawn"
 
     @property
     def motions(self) -> Axis | None:
         """The set of motions that are drawn; None where there is one motion."""
         return next(iter(sets_among(self.random)), None)
-
-    @property
-    def varied(self) -> set[str]:
-        """Keys of the axes, and of what is random."""
-        return super().varied | {quantity.key for quantity in self.random}
-
-    @property
-    def held(self) -> str:
-        """What is held fixed of the unknown inputs that are not drawn, in words."""
-        return held_inputs(self.cases, {*self.varied, *self.unknown})
-
-    @cached_property
-    def unknown(self) -> tuple[str, ...]:
-        """Keys of the unknown inputs that are drawn over their ranges in [uncertainty] of the case.
-
-        What the file varies itself, by [axes], [random] or [derived], stays as it is there.
-        """
-        ranges = (interval for case in self.cases for interval in ranges_of(case, penalty_of(case)))
-        drawn = {interval.key for interval in ranges if interval.drawn is not None}
-        drawn -= {*self.varied, *self.derived}
-        return tuple(key for key in INPUTS if key in drawn) if self.unknown_inputs == "drawn" else ()
 
     def draws_at(self, cell: int) -> list[Item]:
         """The draws of a point; each motion of a set is drawn equally often, and is a replicate.
@@ -409,38 +403,14 @@ class Ensemble(Design):
             sets = {axis.key: axis.values, **axis.following}
             columns |= {key: [value for value in row for _ in range(each)] for key, row in sets.items()}
         point, rows = self.point(cell), zip(*columns.values(), strict=True)
-        draws = [
-            Item(cell, number, point, dict(zip(columns, row, strict=True))) for number, row in enumerate(rows)
-        ]
+        draws = [Item(cell, k, point, dict(zip(columns, row, strict=True))) for k, row in enumerate(rows)]
         if not self.unknown:
             return draws
-        shares = shares_of(dimensions=len(self.unknown), stream=STREAM)
-        return [self._with_unknown(draw, row) for draw, row in zip(draws, shares.tolist(), strict=True)]
-
-    def _with_unknown(self, draw: Item, shares: list[float]) -> Item:
-        """A draw with values at these shares of the ranges that it has; without any where it cannot be made."""
-        try:
-            case = self.make.case(draw)
-            ranges = ranges_of(case, penalty_of(case))
-        except (CaseError, ValueError):
-            return draw
-        share = dict(zip(self.unknown, shares, strict=True))
-        drawn = [interval for interval in ranges if interval.key in share]
-        unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
-        more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
-        return draw._replace(unknown=unknown, more=more)
-
-    def corners(self, *, listed: bool = False) -> Iterator[Item]:
-        """Runs at the ends of each axis, in the middle and at the ends of all distributions."""
-        shares = np.array([0.5, 0.0, 1.0])
-        drawn = list(zip(*(quantity.values(shares) for quantity in self.random), strict=True))
-        for item, values in product(super().corners(listed=listed), drawn):
-            yield self.drawn(item.point, values)
-
-    def drawn(self, point: Mapping[str, Any], values: Iterable[Any]) -> Item:
-        """The run at a point, of values of what is random."""
-        drawn: dict[str, Any] = {}
-        for quantity, value in zip(self.random, values, strict=True):
-            choices = [quantity.choices] if quantity.choices else []
-            drawn |= with_following(choices, {quantity.key: value})
-        return Item(0, 0, point, drawn)
+        for k, row in enumerate(shares_of(dimensions=len(self.unknown), stream=STREAM).tolist()):
+            with suppress(ValueError):  # one that cannot be made has no unknown inputs
+                case, share = self.make.case(draws[k]), dict(zip(self.unknown, row, strict=True))
+                drawn = [interval for interval in ranges_of(case, penalty_of(case)) if interval.key in share]
+                unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
+                more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
+                draws[k] = draws[k]._replace(unknown=unknown, more=more)
+        return draws

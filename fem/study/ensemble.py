@@ -81,9 +81,9 @@ def _compute(
     codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
     slips, limit = np.full(codes.shape, np.nan), ensemble.limit_slip_m
     #: keys that are drawn, and those that follow the motion of a draw
-    drawn = [quantity.key for quantity in ensemble.random]
-    drawn += [key for axis in sets_among(ensemble.random) for key in axis.following]
-    keys = [f"{key}{' factor' if key in ensemble.relative else ''}" for key in drawn]
+    following = [key for axis in sets_among(ensemble.random) for key in axis.following]
+    drawn = [*(quantity.key for quantity in ensemble.random), *following]
+    keys = [*(f"{one.key}{' factor' * one.relative}" for one in ensemble.random), *following]
     columns: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
     columns |= dict.fromkeys((*keys, *ensemble.unknown), str) | SHOWN
 

@@ -51,11 +51,7 @@ ReadT = TypeVar("ReadT")
 
 
 def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT]) -> StudyT:
-    """Parse the file of a study, and have `read` make it from the data.
-
-    Raises:
-        CaseError: with one line for each reason why it cannot be used, each beginning with the file.
-    """
+    """Parse the file of a study, and have `read` make it; CaseError with a line for each reason why not."""
     data = parse_case(origin)
     try:
         return read(data, origin)
@@ -114,19 +110,10 @@ def base_case(
     motion: Mapping[str, Any] | None = None,
     varied: Iterable[str] = (),
 ) -> Case:
-    """The case that is varied, with the keys of [set] changed.
+    """The case that is varied, with the keys of [set] changed; CaseError where it cannot be used.
 
-    A file is looked for beside the one that names it, and wins over a shipped case.
-
-    Args:
-        name: of the case.
-        changes: the table [set].
-        origin: of the study.
-        motion: keys of the first of a set of motions; the files of a shipped case are then beside the study.
-        varied: keys of the table [axes].
-
-    Raises:
-        CaseError: there is neither, it is outside that folder, or it cannot be used.
+    A file beside that of the study wins over a shipped case. `motion`: keys of the first of a set of motions; the files
+    of a shipped case are then beside the study. `varied`: keys of the table [axes], for messages.
     """
     CASES.beside(name, origin)
     path = origin.folder / name
@@ -246,35 +233,62 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     heading = read_as("", StudyHeading, given)
     example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
     axes = _each_key("axes", flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
-    keys, values = [axis.key for axis in axes], {axis.key: axis.values for axis in axes}
+    keys, known = [axis.key for axis in axes], {axis.key: axis for axis in axes}
     base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
     _require_verticals(axes, keys, base)
 
     def check_reference(name: str) -> None:
         if not name.startswith(FREE):
             field_of(name)
-        elif name not in values:
+        elif name not in known:
             raise AxisError("is no axis")
-        if any(isinstance(value, str | bool) for value in values.get(name, ())):
+        if name in known and len(known[name].numbers) < len(known[name].values):
             raise AxisError("has values that are no numbers")
-        firsts = {key: some[0] for key, some in values.items()}
-        if name not in values and value_in(base, name, firsts) is None:
+        if name not in known and value_in(base, name, {axis.key: axis.values[0] for axis in axes}) is None:
             way_out = "set it under [set], or refer to a key that is given there"
             raise AxisError(f"has no number in the base case {base.name!r}; {way_out}")
 
-    derived = read_derived(flat("derived", tables.get("derived", {})), values, check_varied, check_reference)
+    derived = read_derived(flat("derived", tables.get("derived", {})), keys, check_varied, check_reference)
     require_once(tables.get("set", {}), [*keys, *derived], base)
+    perturbation = read_as("perturbation", Perturbation, tables.get("perturbation", {}))
+    axis_list = ", ".join(keys)
+    threshold = read_as("threshold", Threshold, tables["threshold"]) if "threshold" in tables else None
+    if threshold is not None:
+        named, along = f"[threshold] axis {threshold.axis!r}", known.get(threshold.axis)
+        if along is None:
+            raise CaseError(f"{named} is none of the axes{hint(threshold.axis, known)} (axes: {axis_list})")
+        if not along.is_numeric:
+            raise CaseError(f"{named} needs two or more numbers that rise")
+        if any(isinstance(value, int) for value in along.values):
+            raise CaseError(f"{named} takes whole numbers: there is nothing between its cells")
+    content = tables.get("maps", {})
+    if isinstance(content.get("fixed", {}), dict):
+        content = {**content, "fixed": flat("maps.fixed", content.get("fixed", {}))}
+    maps = read_as("maps", MapChoice, content)
+    for key in (maps.x, maps.y, *maps.fixed):
+        if key is not None and key not in known:
+            raise CaseError(f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {axis_list})")
+    for key, value in maps.fixed.items():
+        if value not in known[key].values:
+            listed = ", ".join(map(str, known[key].values))
+            raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
+        if key in (maps.x, maps.y):
+            raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
+    if len(known) > 1 and len(known) - len(maps.fixed) < 2:
+        raise CaseError("[maps] a map needs two axes that are not fixed")
+    if maps.x is not None and maps.x == maps.y:
+        raise CaseError(f"[maps] a map needs two axes, got {maps.x!r} twice")
     sweep = Sweep(
         name=origin.name,
         text=origin.text,
         title=heading.title,
+        limit_slip_m=heading.limit_slip_m,
         base=base,
         axes=axes,
         derived=derived,
-        perturbation=read_as("perturbation", Perturbation, tables.get("perturbation", {})),
-        threshold=_threshold(tables, axes),
-        maps=_maps(tables.get("maps", {}), values),
-        limit_slip_m=heading.limit_slip_m,
+        perturbation=perturbation,
+        threshold=threshold,
+        maps=maps,
     )
     idle = list(keys)  # without an effect in any of the cases
     for case in _tried(sweep, sweep.corners(listed=True), "[axes] make this cell", str):
@@ -285,42 +299,6 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
             "choose the option it belongs to under [set], or leave the axis out"
         )
     return sweep
-
-
-def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
-    if "threshold" not in tables:
-        return None
-    threshold = read_as("threshold", Threshold, tables["threshold"])
-    named, known = f"[threshold] axis {threshold.axis!r}", {axis.key: axis for axis in axes}
-    if threshold.axis not in known:
-        near = hint(threshold.axis, known)
-        raise CaseError(f"{named} is none of the axes{near} (axes: {', '.join(known)})")
-    if not known[threshold.axis].is_numeric:
-        raise CaseError(f"{named} needs two or more numbers that rise")
-    if any(isinstance(value, int) for value in known[threshold.axis].values):
-        raise CaseError(f"{named} takes whole numbers: there is nothing between its cells")
-    return threshold
-
-
-def _maps(content: Mapping[str, Any], known: Mapping[str, tuple[Any, ...]]) -> MapChoice:
-    fixed = content.get("fixed", {})
-    flattened = {"fixed": flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {}
-    choice = read_as("maps", MapChoice, {**content, **flattened})
-    for key in (choice.x, choice.y, *choice.fixed):
-        if key is not None and key not in known:
-            near = hint(key, known)
-            raise CaseError(f"[maps] {key!r} is none of the axes{near} (axes: {', '.join(known)})")
-    for key, value in choice.fixed.items():
-        if value not in known[key]:
-            listed = ", ".join(map(str, known[key]))
-            raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
-        if key in (choice.x, choice.y):
-            raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
-    if len(known) > 1 and len(known) - len(choice.fixed) < 2:
-        raise CaseError("[maps] a map needs two axes that are not fixed")
-    if choice.x is not None and choice.x == choice.y:
-        raise CaseError(f"[maps] a map needs two axes, got {choice.x!r} twice")
-    return choice
 
 
 def _tried(design: Design, items: Iterable[Item], tables: str, words: Callable[[Any], str]) -> Iterator[Case]:
@@ -351,11 +329,20 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     keys = [axis.key for axis in axes]
 
     def drawn_key(key: str, value: Any) -> RandomQuantity:
-        _check_key(key)
+        check_key(key)
         quantity = read_random(key, value)
         if key in keys and not quantity.relative:
             raise AxisError("is an axis as well; give the scatter about its values with relative = true")
         return quantity
+
+    def check_key(key: str) -> None:
+        if not key.startswith(FREE):
+            check_varied(key)
+
+    def check_reference(name: str) -> None:
+        check_key(name)
+        if name.startswith(FREE) and name not in varied:
+            raise AxisError("is neither an axis nor drawn")
 
     example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
     random = _each_key("random", tables.get("random", {}), MOST_RANDOM, example, drawn_key)
@@ -368,55 +355,16 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     _require_verticals(sets, varied, base)
     drawn = [quantity.key for quantity in random if not quantity.relative]
     require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
-
-    def check_reference(name: str) -> None:
-        _check_key(name)
-        if name.startswith(FREE) and name not in varied:
-            raise AxisError("is neither an axis nor drawn")
-
+    draws, replicates = heading.draws, 1 if heading.sampling == "independent" else heading.replicates
+    replicates = len(sets[0].values) if sets else replicates
     own = heading.model_dump(exclude={"case", "replicates"})
-    replicates = 1 if heading.sampling == "independent" else heading.replicates
-    ensemble = Ensemble(
-        name=origin.name,
-        text=origin.text,
-        base=base,
-        axes=axes,
-        random=random,
-        relative=frozenset(quantity.key for quantity in random if quantity.relative),
-        derived=read_derived(derived, varied, _check_key, check_reference),
-        replicates=len(sets[0].values) if sets else replicates,
-        **own,
-    )
-    _check_draws(ensemble)
-    ends = product(Design.corners(ensemble), product(*(quantity.ends for quantity in random)))
-    items = (ensemble.drawn(item.point, values) for item, values in ends)
-    list(_tried(ensemble, items, "[axes] and [random] make this case", lambda value: f"{value:g}"))
-    return ensemble
-
-
-def _axis(key: str, value: Any, *, rising: bool = False) -> Axis:
-    # A free variable takes any number, as the scale of a table of motion does.
-    axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
-    if rising and any(isinstance(number, str | bool) for number in axis.values):
-        raise AxisError("must hold numbers; make a file for each of its words")
-    if rising and list(axis.values) != sorted(axis.values):
-        raise AxisError("must rise; sort its values")
-    return axis
-
-
-def _check_key(key: str) -> None:
-    if not key.startswith(FREE):
-        check_varied(key)
-
-
-def _check_draws(ensemble: Ensemble) -> None:
-    draws, replicates = ensemble.draws, ensemble.replicates
+    own |= {"name": origin.name, "text": origin.text, "base": base, "axes": axes, "random": random}
+    follow = read_derived(derived, varied, check_key, check_reference)
+    ensemble = Ensemble(derived=follow, replicates=replicates, **own)
     if draws % replicates:
-        raise CaseError(
-            f"draws = {draws} do not make {replicates} "
-            f"{'replicates of one size' if ensemble.motions is None else 'motions equally likely'}; "
-            f"take {replicates * max(draws // replicates, 1)} draws"
-        )
+        parts = "motions equally likely" if sets else "replicates of one size"
+        fit = replicates * max(draws // replicates, 1)
+        raise CaseError(f"draws = {draws} do not make {replicates} {parts}; take {fit} draws")
     size = draws // replicates
     if ensemble.sampling == "sobol" and size & (size - 1):
         raise CaseError(
@@ -433,3 +381,16 @@ def _check_draws(ensemble: Ensemble) -> None:
         raise CaseError(
             f"[axes] make {ensemble.count} points x {draws} draws = {runs} runs; at most {MOST_RUNS}"
         )
+    items = ensemble.corners(drawn=[*product(*(quantity.ends for quantity in random))])
+    list(_tried(ensemble, items, "[axes] and [random] make this case", lambda value: f"{value:g}"))
+    return ensemble
+
+
+def _axis(key: str, value: Any, *, rising: bool = False) -> Axis:
+    # A free variable takes any number, as the scale of a table of motion does.
+    axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+    if rising and any(isinstance(number, str | bool) for number in axis.values):
+        raise AxisError("must hold numbers; make a file for each of its words")
+    if rising and list(axis.values) != sorted(axis.values):
+        raise AxisError("must rise; sort its values")
+    return axis

@@ -46,7 +46,7 @@ from fem.runtime.identity import command_line
 from fem.runtime.terminal import one_line
 from fem.runtime.user_files import read_regular
 from fem.study.axes import MOTION_FILE, NAMED, NO_AXIS, VERTICAL_FILE, AxisError, field_of, read_axis
-from fem.study.design import CaseMaker, Design, Item
+from fem.study.design import Design, Item
 from fem.study.driver import (
     COMPLETED,
     FAILED,
@@ -93,16 +93,8 @@ class HallResult(StudyResult):
     """All results of a hall."""
 
     written_where_given = StudyResult.written_where_given | {"allow_outside", "one_side"}
-    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {
-        "table": RESULT_COLUMNS | ROW_COLUMNS,
-        "tags": OF_A_TAG,
-    }
-    needed: ClassVar[frozenset[str]] = frozenset({"status", *ROW_COLUMNS, *OF_A_TAG}) - {
-        "command",
-        "margin",
-        "does",
-        "card",
-    }
+    columns_of: ClassVar[Mapping[str, Any]] = {"table": RESULT_COLUMNS | ROW_COLUMNS, "tags": OF_A_TAG}
+    needed = frozenset({"status", *ROW_COLUMNS, *OF_A_TAG} - {"command", "margin", "does", "card"})
     hall: str
     case: str
     asked: str  #: hash of what is computed
@@ -217,7 +209,7 @@ class HallFile:
         self.table.require_names()
         _ = self.decimal_mark
         places = {column: self.header.index(column) for column in self.meanings}
-        named, keys, rows = [k for k, name in enumerate(self.header) if name], self.keys, []
+        named, rows = [k for k, name in enumerate(self.header) if name], []
         for number, line in enumerate(self.table.lines, start=1):
             given = {column: one_line(plain_text(line.field(k))) for column, k in places.items()}
             texts = dict(zip(self.meanings.values(), given.values(), strict=True))
@@ -227,7 +219,7 @@ class HallFile:
             whole = len(line.fields) > named[-1] and not any(line.fields[len(self.header) :])
             if not whole:
                 reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
-            values = {key: _value(key, texts[key]) for key in keys if whole and texts[key]}
+            values = {key: _value(key, texts[key]) for key in self.keys if whole and texts[key]}
             name, tag = texts.get(NAME) or str(number), texts.get(TAG, "")
             own: dict[str, Any] = {"line": line.number, "name": name, "count": int(count), "tag": tag}
             rows.append(HallRow(**own, given=given, values=values, reason=reason))
@@ -270,10 +262,7 @@ def read_hall(path: Path) -> HallFile:
 
 
 def _meaning(column: str) -> str:
-    """What a column means: a dotted key, or a name of `OWN`; empty for one that is kept as it is.
-
-    AxisError for one that looks like a key and is none, or may be several.
-    """
+    """A dotted key, a name of `OWN`, or "" for what is kept; AxisError for what is like a key, or may be several."""
     table, dot, _ = column.partition(".")
     if dot and difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE):
         field_of(column)
@@ -344,17 +333,12 @@ class Hall(Design):
     named: tuple[str, ...] = ()  #: these, as they were named on the command line
     rows: tuple[HallRow, ...] = ()  #: each with its container, or why it is refused
     containers: Mapping[str, HallRow] = field(default_factory=dict)  #: by hash, the first row of each
+    allow_outside: bool = False  #: files of the case may lie outside its folder
 
     @cached_property
     def keys(self) -> list[Mapping[str, Any]]:
         """Those that set each motion; of the motion of the base case none."""
         return [pair.keys for pair in self.motions] or [{}]
-
-    @cached_property
-    def make(self) -> CaseMaker:
-        """Makes the cases of runs."""
-        base = _with_files_of_the_command_line(self.base) if self.motions else self.base
-        return CaseMaker(base.without_fields())
 
     @cached_property
     def items(self) -> list[Item]:
@@ -368,8 +352,7 @@ class Hall(Design):
 
     def command(self, item: Item, values: Mapping[str, Any]) -> str:
         """The command that computes a run by itself, with the values of a row."""
-        origin = self.base.origin_with({})
-        words = ["run", origin.place, *["--allow-outside"] * origin.allow_outside]
+        words = ["run", self.base.origin_with({}).place, *["--allow-outside"] * self.allow_outside]
         if self.named:
             words += ["--motion", self.named[item.draw % len(self.named)].partition(",")[0].strip()]
         for override in self.base.overrides:
@@ -381,14 +364,13 @@ class Hall(Design):
         return command_line(*words)
 
     def checked(self) -> "Hall":
-        """The list with every row checked before any is computed; equal rows are one container.
+        """The list with every row checked before any is computed; CaseError for no good row.
 
-        Raises:
-            CaseError: no good row.
+        Equal rows are one container.
         """
-        containers, numbers = dict[str, HallRow](), dict[str, int]()  # by hash: the first row, and its number
+        containers = dict[str, HallRow]()
         seen: dict[str, dict[str, Any]] = {}  # by what a row sets: its container, or why it is refused
-        rows = []
+        rows, place = [], f"{self.base.origin_with({}).place}: "
         for row in self.file.rows:
             values = repr(sorted(row.values.items()))
             if not row.reason and values not in seen:
@@ -401,11 +383,9 @@ class Hall(Design):
                     for keys in self.keys if moved else self.keys[:1]:
                         build_motions(self.make.case(Item(0, 0, keys, row.values)))
                     narrower = first.container.depth_m < first.container.width_m and not self.one_side
-                    digest = case_hash(first)
-                    containers.setdefault(digest, replace(row, across=first.turned if narrower else {}))
-                    seen[values] = {"container": numbers.setdefault(digest, len(numbers))}
+                    known = replace(row, across=first.turned if narrower else {}, container=len(containers))
+                    seen[values] = {"container": containers.setdefault(case_hash(first), known).container}
                 except ValueError as error:  # on one line, without mention of the command line
-                    place = f"{self.base.origin_with({}).place}: "
                     lines = (line.removeprefix(place) for line in str(error).splitlines())
                     lines = (re.sub(r" \(--set \S+?=.*\)$", "", line) for line in lines)
                     told = (line for line in lines if line and not line.startswith("with --set "))
@@ -416,13 +396,6 @@ class Hall(Design):
             more = [f"and {len(bad) - MOST_NAMED} more rows"] * (len(bad) > MOST_NAMED)
             raise CaseError("\n".join([*bad[:MOST_NAMED], *more, "no row can be computed"]))
         return replace(self, rows=tuple(rows), containers=containers)
-
-
-def _with_files_of_the_command_line(base: Case) -> Case:
-    """The base case with motions from anywhere."""
-    origin = base.origin_with({})
-    trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
-    return base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
 
 
 def _ending_in(row: Row) -> str:
@@ -479,18 +452,22 @@ def run_hall(
         if motions and (named := [key for key in file.keys if key in (MOTION_FILE, VERTICAL_FILE)]):
             raise CaseError(f"{file.name}: column {named[0]!r} and --motion both name the motion; use one")
         pairs: tuple[FloorMotionPair, ...] = ()
+        origin, own = base.origin_with({}), base
         if motions:  # from anywhere: files "H" or "H,V"
+            trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
+            own = base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
             files = [[as_named_from(base.folder, name.strip()) for name in one.split(",")] for one in motions]
             try:
                 axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in files])
             except AxisError as error:
                 raise CaseError(f"--motion {error}") from None
-            pairs = read_motion_set(_with_files_of_the_command_line(base), [axis], runner)
+            pairs = read_motion_set(own, [axis], runner)
+        asked: dict[str, Any] = {"motions": pairs, "named": motions, "one_side": one_side}
         hall = Hall(
-            name=file.name, file=file, base=base, motions=pairs, named=motions, one_side=one_side
+            name=file.name, file=file, base=own, allow_outside=origin.allow_outside, **asked
         ).checked()
         options["workers_of"] = runner.workers_of
-        origin, both = base.origin_with({}), any(row.across for row in hall.containers.values())
+        both = any(row.across for row in hall.containers.values())
         begun = HallResult(
             hall=hall.name,
             case=origin.place,
@@ -526,9 +503,8 @@ def run_hall(
 
 def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runner) -> HallResult:
     """Compute what is missing, and write the list with its results."""
-    items = hall.items
-    named: dict[str, Any] = {"what": "runs", "path": results.path / RUNS, "columns": RUN_COLUMNS}
-    runs = hall.runs(**named, key=lambda item: item[:2], ids=2)
+    items, path = hall.items, results.path
+    runs = hall.runs(what="runs", path=path / RUNS, columns=RUN_COLUMNS, key=lambda item: item[:2], ids=2)
     runs.run(runner, [items])
     begun = replace(begun, runs=len(runs.lines))
     if runs.missing(items):
@@ -538,14 +514,14 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     weakest = sorted(found, key=lambda pair: weakness(pair[1]))
     able = [item for item, row in weakest if row["outcome"] and hall.model_of(item) != "full"]
     count = {"none": 0, "all": len(able)}.get(begun.checks, max(math.ceil(SHARE * len(found)), LEAST))
-    named = {"path": results.path / CHECKS, "columns": CHECK_COLUMNS, "work": check_chunk}
-    named["what"] = "containers repeated with other inputs and stronger motions"
-    checks = hall.runs(**named, key=lambda item: item[:1], ids=1)
+    named = {"what": "containers repeated with other inputs and stronger motions", "work": check_chunk}
+    own = {"path": path / CHECKS, "columns": CHECK_COLUMNS, "key": lambda item: item[:1], "ids": 1}
+    checks = hall.runs(**named, **own)
     to_check = partial(checks.missing, able[:count])
     checks.run(runner, iter(to_check, []))
     begun = replace(begun, checked=len(checks.lines))
-    if left := len(to_check()):
-        return replace(begun, status=INTERRUPTED, missing=f"{left} of the weakest are still to be repeated")
+    if count := len(to_check()):
+        return replace(begun, status=INTERRUPTED, missing=f"{count} of the weakest are still to be repeated")
     results.check()
     results.write(RUNS, runs.table())
     results.write(CHECKS, checks.table())
@@ -555,13 +531,56 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
         row["first_line"] = row["card"].partition(CARD_LINES)[0]
     for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
         container["rank"] = rank
-    return _written(results, begun, hall, found)
+    table, outcomes, tags = list[Row](), Counter[str](), dict[str, dict[str, Any]]()
+    for number, listed in enumerate(hall.rows, start=1):
+        shown: Row = {"status": REFUSED, "reason": listed.reason}
+        if listed.container is not None:
+            item, shown = found[listed.container]
+            shown = shown | {"command": hall.command(item, listed.values)}
+        row = {"row": number} | {name: getattr(listed, name) for name in LISTED}
+        row |= {name: shown.get(name) for name in (*RESULT_COLUMNS, "command", *CARD)}
+        table.append(row)
+        ending = _ending_in(row)
+        outcomes[row["outcome"] or ending] += row["count"]
+        empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
+        tag = tags.setdefault(row["tag"], empty)
+        tag["containers"] += row["count"]
+        tag["counts"][ending] += row["count"]
+        tag["margin"] = min(filter(None, (tag["margin"], row["margin_governs"])), default=None)
+    result = replace(
+        begun,
+        status=FAILED if {row["status"] for _, row in found} == {FAILED} else COMPLETED,
+        outcomes=dict(sorted(outcomes.items())),
+        tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
+        table=tuple(table),
+    )
+    # in the list's own separator and decimal mark; most programs do not read quoted fields as numbers
+    separator, comma = hall.file.table.separator, hall.file.decimal_mark == ","
+    separator = ";" if separator == "," and comma else separator
+    fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
+    lines = (
+        line_of(line, separator=separator, comma=comma, digits=DIGITS)
+        for line in ([*hall.file.meanings, *RESULT_COLUMNS], *fields)
+    )
+    stated = f"sep={separator}\n" * (separator not in ",;\t")
+    results.write(TABLE, stated + "".join(f"{line}\n" for line in lines))
+    results.remove("report.html")  # the command makes another
+    left = [row for row in result.ranked if row["does"] == LEAVES]
+    farthest = max(left, key=itemgetter(SLIPPED), default=None)
+    tried = (row for row in result.ranked if row["margin_governs"] is not None)
+    least = min(tried, key=itemgetter("margin_governs"), default=None)
+    known: dict[str, Any] = {
+        **{"left": left, "farthest": farthest, "least": least},
+        "slid": farthest and FIGURES[SLIPPED].unit.text(farthest[SLIPPED], figures=2),
+        "margin": least and times(least["margin_governs"]),
+    }
+    return replace(result, answer=text_of("hall_answer.txt.j2", result=result, **known))
 
 
 def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tuple[Item, Row]:
-    """The run in which a container does worst, the first of equals; and the results of the container.
+    """The run in which a container does worst, the first of equals; its results, its static rule, those of all motions.
 
-    These are those of that run, the static rule under its peak, and what all its motions do. Of two sides the worse.
+    Of two sides the worse.
     """
     rows, motions, sides = [*map(runs.row, items)], len(hall.keys), list[tuple[Item, Row]]()
     for first in range(0, len(items), motions):
@@ -602,58 +621,3 @@ def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tup
         )
         row |= zip(OF_MOTIONS, under, strict=True)
     return item, row
-
-
-def _written(
-    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[tuple[Item, Row]]
-) -> HallResult:
-    """The finished result of a checked list, with the list written; the governing run and the row of each container."""
-    table, outcomes, tags = list[Row](), Counter[str](), dict[str, dict[str, Any]]()
-    for number, listed in enumerate(hall.rows, start=1):
-        found_so: Row = {"status": REFUSED, "reason": listed.reason}
-        if listed.container is not None:
-            item, found_so = found[listed.container]
-            found_so = found_so | {"command": hall.command(item, listed.values)}
-        row = {"row": number} | {name: getattr(listed, name) for name in LISTED}
-        row |= {name: found_so.get(name) for name in (*RESULT_COLUMNS, "command", "does", "card")}
-        table.append(row)
-        ending = _ending_in(row)
-        outcomes[row["outcome"] or ending] += row["count"]
-        empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
-        tag = tags.setdefault(row["tag"], empty)
-        tag["containers"] += row["count"]
-        tag["counts"][ending] += row["count"]
-        tag["margin"] = min(filter(None, (tag["margin"], row["margin_governs"])), default=None)
-    result = replace(
-        begun,
-        status=FAILED if {row["status"] for _, row in found} == {FAILED} else COMPLETED,
-        outcomes=dict(sorted(outcomes.items())),
-        tags=tuple(tag for _, tag in sorted(tags.items())) if {*tags} != {""} else (),
-        table=tuple(table),
-    )
-    # in the list's own separator and decimal mark; most programs do not read quoted fields as numbers
-    separator, comma = hall.file.table.separator, hall.file.decimal_mark == ","
-    separator = ";" if separator == "," and comma else separator
-    fields = ([*row["given"].values(), *(row[name] for name in RESULT_COLUMNS)] for row in table)
-    lines = (
-        line_of(line, separator=separator, comma=comma, digits=DIGITS)
-        for line in ([*hall.file.meanings, *RESULT_COLUMNS], *fields)
-    )
-    stated = f"sep={separator}\n" * (separator not in ",;\t")
-    results.write(TABLE, stated + "".join(f"{line}\n" for line in lines))
-    results.remove("report.html")  # the command makes another
-    left = [row for row in result.ranked if row["does"] == LEAVES]
-    farthest = max(left, key=itemgetter(SLIPPED), default=None)
-    slid = farthest and FIGURES[SLIPPED].unit.text(farthest[SLIPPED], figures=2)
-    tried = (row for row in result.ranked if row["margin_governs"] is not None)
-    least = min(tried, key=itemgetter("margin_governs"), default=None)
-    margin = least and times(least["margin_governs"])
-    known: dict[str, Any] = {
-        "left": left,
-        "farthest": farthest,
-        "slid": slid,
-        "least": least,
-        "margin": margin,
-    }
-    answer = text_of("hall_answer.txt.j2", result=result, **known)
-    return replace(result, answer=answer)

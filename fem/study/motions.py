@@ -7,6 +7,7 @@ import hashlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +17,17 @@ from contact.motion.table import TableMotion
 from fem.case.case import Case, CaseError, case_hash
 from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
-from fem.model.motion import build_motion
+from fem.model.motion import build_motion, build_motions, motion_result
 from fem.records.intensity import Intensity, intensity
 from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.figures import types_of
 from fem.results.folder import ResultFolder
+from fem.run.described import part_covered
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import real_path
 from fem.study.axes import MOTION_FILE, VERTICAL_FILE, Axis, set_axis, with_following
 from fem.study.design import CaseMaker
-from fem.study.runner import Runner, motion_left_out
+from fem.study.runner import Runner
 from fem.study.table import Columns, table_of_rows, table_text
 from fem.study.workers import FoundT, ItemT
 
@@ -96,13 +98,16 @@ def read_motion_set(
     return tuple(pairs)
 
 
-def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | None:
+def motions_left_out(base: Case, motions: Sequence[FloorMotionPair] = ()) -> str | None:
     """The part of the motion that the runs cover, where they end before it; of a set, that of the first one cut.
 
     None where every motion is covered.
     """
     if not motions:
-        return motion_left_out(base)
+        try:
+            return part_covered(motion_result(base, *build_motions(base))) or None
+        except CaseError:  # a row of the study says so
+            return None
     cut = [f"{motion.left_out} ({motion.name}" for motion in motions if motion.left_out is not None]
     more = f", and {len(cut) - 1} more motions are cut" if len(cut) > 1 else ""
     return f"{cut[0]}{more})" if cut else None
@@ -155,7 +160,17 @@ def spectra_of(
 def _each(
     runner: Runner | None, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]
 ) -> list[FoundT]:
-    return runner.each(what, items, work) if runner and len(items) >= LARGE_SET else list(map(work, items))
+    """The results of some work, done by workers for many items; the ValueError of the first that raises one."""
+    if runner is None or len(items) < LARGE_SET:
+        return list(map(work, items))
+    results: list[FoundT] = []
+    for _, found in sorted(runner.each(what, enumerate(items), work), key=itemgetter(0)):
+        if isinstance(found, ValueError):
+            raise found
+        results.append(found)
+    if len(results) < len(items):
+        raise KeyboardInterrupt
+    return results
 
 
 def _components(case: Case) -> Iterator[tuple[str, TableMotion]]:
@@ -188,7 +203,7 @@ def _read(make: CaseMaker, keys: Mapping[str, Any]) -> FloorMotionPair:
         keys=keys,
         measures=tuple(measures),
         contents=tuple(contents),
-        left_out=motion_left_out(case),  # asked now, while the file is in memory
+        left_out=motions_left_out(case),  # asked now, while the file is in memory
         case_hash=case_hash(case),
     )
 

@@ -14,19 +14,18 @@ from functools import partial
 from operator import itemgetter
 from typing import Any, Literal, TypedDict, Unpack, overload
 
-from fem.case.case import Case, CaseError
+from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.equilibrium import Equilibrium, same_equilibrium
 from fem.model.geometry import build_container
 from fem.model.model import Model, build_model
-from fem.model.motion import build_motions, motion_result
+from fem.model.motion import build_motions
 from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS, BoxResult
 from fem.results.run_result import Verdict
 from fem.run.card import line as line_of_card
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
-from fem.run.described import part_covered
 from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
@@ -42,7 +41,6 @@ from fem.study.workers import (
     FoundT,
     ItemT,
     LocalWorkers,
-    Pool,
     WorkersOf,
     hand_out,
     never,
@@ -81,7 +79,7 @@ class Runner:
         self,
         what: str,
         items: Iterable[ItemT],
-        make: Callable[[ItemT], Case],
+        make: Callable[[ItemT], Any],
         model_of: Callable[[ItemT], str],
         work: ChunkWork | None = None,
     ) -> Generator[tuple[list[ItemT], list[Row]], None, None]:
@@ -100,46 +98,36 @@ class Runner:
             by_model.setdefault(model_of(item), []).append(item)
         with closing(_Told(what, sum(map(len, by_model.values())), self.reporter)) as told:
             for model, group in sorted(by_model.items(), key=lambda pair: [*CASES_AT_A_TIME].index(pair[0])):
-                pools = self.workers_of(model, len(group))
-                chunks = hand_out(
-                    group,
-                    partial(work or run_chunk, make),
-                    pools,
-                    at_a_time=1 if work else _chunk_size(model, len(group), pools),
-                    stop=self.stop,
-                    finish=model != "full" and work is None,  # one of these may take an hour
-                )
-                for chunk, rows in chunks:
+                pools, size = self.workers_of(model, len(group)), 1
+                workers = sum(pool.count for pool in pools)
+                if work is None and model != "full":
+                    usual = CASES_AT_A_TIME[model]
+                    size = max(
+                        usual, min(usual * workers // MANY_WORKERS, len(group) // (LEAST_CHUNKS * workers))
+                    )
+                done = partial(work or run_chunk, make)
+                finish = model != "full" and work is None  # one of these may take an hour
+                for chunk, rows in hand_out(
+                    group, done, pools, at_a_time=size, stop=self.stop, finish=finish
+                ):
                     yield chunk[: len(rows)], rows
                     told.more(len(rows), sum(row["status"] == "failed" for row in rows))
 
-    def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
-        """Let the workers do some work for each item; it must be picklable.
+    def each(
+        self,
+        what: str,
+        items: Iterable[tuple[int, ItemT]],
+        work: Callable[[ItemT], FoundT],
+        model_of: Callable[[tuple[int, ItemT]], str] = lambda item: "rigid",
+    ) -> Generator[tuple[int, FoundT | ValueError], None, None]:
+        """Let the workers do some work, which must be picklable, for each numbered item.
 
-        Returns:
-            The results in the order of the items.
-
-        Raises:
-            ValueError: that of the first item whose work raises one.
-            KeyboardInterrupt: `stop` ended the work.
+        Yields numbers and results, or the ValueError that the work raised, as they are ready.
         """
-        told = _Told(what, len(items), self.reporter)
-        ready: dict[int, FoundT | ValueError] = {}
-        pools = self.workers_of("rigid", len(items))
-        size = _chunk_size("rigid", len(items), pools)
-        numbered, tried = list(enumerate(items)), partial(_work_on, work)
-        for chunk, outcomes in hand_out(numbered, tried, pools, at_a_time=size, stop=self.stop):
-            ready |= zip((number for number, _ in chunk), outcomes, strict=False)  # up to an error
-            told.more(len(chunk))
-        told.close()
-        results: list[FoundT] = []
-        for _, outcome in sorted(ready.items(), key=itemgetter(0)):
-            if isinstance(outcome, ValueError):
-                raise outcome
-            results.append(outcome)
-        if len(results) < len(items):
-            raise KeyboardInterrupt
-        return results
+        with closing(self.rows(what, items, itemgetter(1), model_of, partial(_work_on, work))) as found:
+            for chunk, rows in found:
+                for (number, _), row in zip(chunk, rows, strict=True):
+                    yield number, row["found"]
 
 
 @dataclass
@@ -224,33 +212,14 @@ class _Told:
         return f"{self.done} of {self.total} {self.what}, {rate:.3g} per s, {left}{lost}"
 
 
-def _chunk_size(model: str, count: int, pools: Sequence[Pool]) -> int:
-    """Cases handed to a worker at a time."""
-    usual, workers = CASES_AT_A_TIME[model], sum(pool.count for pool in pools)
-    if model == "full":
-        return usual
-    return max(usual, min(usual * workers // MANY_WORKERS, count // (LEAST_CHUNKS * workers)))
-
-
-def _work_on(
-    work: Callable[[ItemT], FoundT], items: Sequence[tuple[int, ItemT]]
-) -> list[FoundT | ValueError]:
-    results: list[FoundT | ValueError] = []
-    for _, item in items:
+def _work_on(work: Callable[[ItemT], FoundT], of: Callable[[Any], ItemT], items: Sequence[Any]) -> list[Row]:
+    rows: list[Row] = []
+    for item in items:
         try:
-            results.append(work(item))
+            rows.append({"status": "", "found": work(of(item))})
         except ValueError as error:
-            return [*results, error]
-    return results
-
-
-def motion_left_out(case: Case) -> str | None:
-    """How much of the motion a run covers, in words; None if all of it."""
-    try:
-        motion = motion_result(case, *build_motions(case))
-    except CaseError:  # a row of the study says so
-        return None
-    return part_covered(motion) or None
+            rows.append({"status": "failed", "found": error})
+    return rows
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
@@ -412,15 +381,21 @@ def compute_many(
     jobs = cores() if jobs is None else jobs
     if jobs < 1:
         raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
+
+    def noted(run: Run | ValueError, number: int) -> Run | ValueError:
+        if isinstance(run, ValueError):
+            run.add_note(f"case {number + 1} of {len(all_cases)} of compute_many")
+            if errors == "raise":
+                raise run
+        return run
+
     runs: dict[int, Run | ValueError] = {}
     for number, case in enumerate(all_cases):
         try:
             build_container(case)
             build_motions(case)
         except ValueError as error:
-            runs[number] = _noted(error, number, len(all_cases))
-            if errors == "raise":
-                raise
+            runs[number] = noted(error, number)
     script = unguarded_script() if min(jobs, len(all_cases)) > 1 else None
     if script is not None:
         no_file = "is no file that a process can load"
@@ -433,35 +408,18 @@ def compute_many(
     keys = [container_key(case) for case in all_cases]  # those of one container follow one another
     first = {key: number for number, key in reversed([*enumerate(keys)])}
     order = sorted(range(len(all_cases)), key=lambda number: first[keys[number]])
-    work = partial(_compute, WantedChecks(**wanted), len(all_cases))
+    items = [(number, all_cases[number]) for number in order if number not in runs]
+    work = partial(_compute, WantedChecks(**wanted))
     reporter = ScreenReporter(quiet=not (watched() if progress is None else progress))
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         runner = Runner(workers_of=workers_of, reporter=reporter, stop=stop_requested)
-        items = [(number, all_cases[number]) for number in order if number not in runs]
-        found = runner.rows("runs", items, itemgetter(1), lambda item: item[1].solver.model, work)
-        with closing(found):
-            for chunk, rows in found:
-                for (number, _), row in zip(chunk, rows, strict=True):
-                    runs[number] = row["run"]
-                    if errors == "raise" and isinstance(row["run"], ValueError):
-                        raise row["run"]
+        with closing(runner.each("runs", items, work, lambda item: item[1].solver.model)) as found:
+            for number, run in found:
+                runs[number] = noted(run, number)
     if stop_requested():
         raise KeyboardInterrupt
     return [runs[number] for number in range(len(all_cases))]
 
 
-def _noted(error: ValueError, number: int, count: int) -> ValueError:
-    error.add_note(f"case {number + 1} of {count} of compute_many")
-    return error
-
-
-def _compute(
-    wanted: WantedChecks, count: int, make: Callable[[Any], Case], items: Sequence[tuple[int, Case]]
-) -> list[Row]:
-    rows: list[Row] = []
-    for number, case in items:
-        try:
-            rows.append({"status": "", "run": compute_on(_CONTAINERS.container_of(case), case, wanted)})
-        except ValueError as error:
-            rows.append({"status": "failed", "run": _noted(error, number, count)})
-    return rows
+def _compute(wanted: WantedChecks, case: Case) -> Run:
+    return compute_on(_CONTAINERS.container_of(case), case, wanted)

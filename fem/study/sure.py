@@ -143,35 +143,34 @@ class Copies:
         return np.array([self._runs[cell].kind for cell in range(self._sweep.count)])
 
     def _made(self, case: Case) -> Iterator[Copy]:
+        """The small changes, and those of a run's band without the inputs that are axes."""
         if self._mesh is None or self._mesh[0] != container_key(case):
             self._mesh = container_key(case), build_container(case)
-        mesh = self._mesh[1]
+        mesh, wanted, axes = self._mesh[1], self._sweep.perturbation, self._sweep.axis_keys
+        draws = round(SHARE_OF_DRAWS * case.uncertainty.draws) if wanted.draws is None else wanted.draws
+        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
+        ranges, pairs, drawn = all_changes(case, penalty, draws)
+        if case.solver.model == "rigid":
+            ranges = (*ranges, *pairs, *drawn)
+        else:
+            ranges = tuple(one for one in ranges if one.share == 1.0 and TOLERANCE not in one.values)
+        changes = [*wanted.changes(case)]
+        for change in ranges:
+            if SUPPORT not in change.values:  # as a rule it takes longer than all other copies together
+                kept = {key: value for key, value in change.values.items() if key not in axes}
+                places = zip(change.values, change.place, strict=False)
+                changes.append(
+                    replace(change, values=kept, place=tuple(x for key, x in places if key in kept))
+                )
         chosen = chosen_values(case, mesh, build_motions(case))
         seen, count = list[object](), Counter[str]()
-        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case, mesh)):
+        for change in changes:
             if change.values and change.values not in seen:
                 seen.append(change.values)
                 keys = "draw" if change.kind == "draw" else " ".join(change.values)
                 values = chosen | as_changed(case, change.values)
                 yield Copy(f"{keys} {count[keys]}", change, values, case.stack[0].width)
                 count[keys] += 1
-
-    def _over_ranges(self, case: Case, mesh: ContainerMesh) -> Iterator[InputChange]:
-        """The changes of a run's band, without the inputs that are axes."""
-        draws, axes = self._sweep.perturbation.draws, self._sweep.axis_keys
-        if draws is None:
-            draws = round(SHARE_OF_DRAWS * case.uncertainty.draws)
-        penalty = None if case.floor.is_slab else normal_penalty(case, mesh)
-        changes, pairs, drawn = all_changes(case, penalty, draws)
-        if case.solver.model == "rigid":
-            changes = (*changes, *pairs, *drawn)
-        else:
-            changes = tuple(one for one in changes if one.share == 1.0 and TOLERANCE not in one.values)
-        for change in changes:
-            if SUPPORT not in change.values:  # as a rule it takes longer than all other copies together
-                kept = {key: value for key, value in change.values.items() if key not in axes}
-                places = zip(change.values, change.place, strict=False)
-                yield replace(change, values=kept, place=tuple(x for key, x in places if key in kept))
 
     def _note(self, line: str) -> None:
         """Add a line of the log."""
@@ -201,23 +200,12 @@ class Copies:
         ]
         return how_sure(levels), tuple(deciding_inputs(levels, alone))
 
-    def _overturned_share(self, cell: int) -> float | None:
-        """Share of a cell and all its copies that do not stand; None of a cell that failed.
-
-        A copy that was not tried, because it turned no cell around this one, counts as the cell, and so does one that
-        failed; draws count where some were tried.
-        """
-        own, tried = self._kind[cell], self.rows.get(cell, {}).values()
-        if own == Ending.FAILED:
-            return None
-        kinds = np.array([trial.run.kind for trial in tried], dtype=int)
-        turned = ((kinds == Ending.STANDING) != (own == Ending.STANDING)) & (kinds != Ending.FAILED)
-        drawn = any(trial.copy.drawn for trial in tried)
-        share = int(turned.sum()) / (1 + sum(drawn or not copy.drawn for copy in self.of(cell)))
-        return share if own == Ending.STANDING else 1.0 - share
-
     def band(self) -> tuple[dict[str, Any], Iterator[tuple[Any, ...]]]:
-        """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`."""
+        """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`.
+
+        The share that overturns is of a cell and all its copies: one that was not tried, because it turned no cell
+        around this one, counts as the cell, and so does one that failed; draws count where some were tried.
+        """
         sweep, cells = self._sweep, range(self._sweep.count)
         found = [self._sureness(cell) for cell in cells]
         unsure = np.array([word == UNSURE for word, _ in found])
@@ -233,12 +221,21 @@ class Copies:
 
         def values() -> Iterator[tuple[Any, ...]]:
             for cell, word, (_, by) in zip(cells, words, found, strict=True):
-                copies = self.rows.get(cell, {}).values()
+                copies, kind, own = (
+                    self.rows.get(cell, {}).values(),
+                    self._kind[cell],
+                    self._runs[cell][TURNED],
+                )
                 ratios = [ratio for copy in copies if (ratio := copy.run[TURNED]) is not None]
-                own, ends = self._runs[cell][TURNED], (None, None)
+                ends, share = (None, None), None
                 if ratios and own is not None and np.isfinite(own):
                     ends = min(own, *ratios), max(own, *ratios)
-                share = self._overturned_share(cell) if word else None
+                if word and kind != Ending.FAILED:
+                    stands, kinds = kind == Ending.STANDING, [one.run.kind for one in copies]
+                    turned = sum((one == Ending.STANDING) != stands and one != Ending.FAILED for one in kinds)
+                    drawn = any(one.copy.drawn for one in copies)
+                    share = turned / (1 + sum(drawn or not copy.drawn for copy in self.of(cell)))
+                    share = share if stands else 1.0 - share
                 reach = (width[cell] for width in widths)
                 yield len(copies), unsure[cell], word, " ".join(by), *ends, share, *reach
 
