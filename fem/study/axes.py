@@ -169,8 +169,17 @@ def read_axis(key: str, given: Any) -> Axis:
     if key == MOTION_FILE:
         names, following = _read_motion_files(given)
         return Axis(key=key, values=names, following=following)
+    values: tuple[Any, ...]
+    scale = "list"
     if isinstance(given, list):
-        values, scale = _listed(given), "list"
+        if not given:
+            raise AxisError("has no values: the list is empty; give one or more")
+        if any(isinstance(value, list | dict) for value in given):
+            raise AxisError("must be a list of single values, got lists or tables in it")
+        if len(set(map(repr, given))) < len(given):
+            twice = next(value for value in given if given.count(value) > 1)
+            raise AxisError(f"has the value {twice!r} twice; leave one out")
+        values = tuple(float(v) if isinstance(v, int) and not isinstance(v, bool) else v for v in given)
     elif isinstance(given, Mapping):
         values, scale = _spaced(given, quantity, unit)
     else:
@@ -184,8 +193,19 @@ def read_axis(key: str, given: Any) -> Axis:
             way_out = "choose from, to and count so that the values are whole, or list them"
             raise AxisError(f"takes whole numbers, got {broken[0]!r}; {way_out}")
         values = tuple(int(value) if isinstance(value, float) else value for value in values)
-    for value in values:
-        _check(field, quantity, unit, value)
+    choices = choices_of(field.annotation) if quantity is None else ()
+    for value in values:  # that the key can never have; rules between keys are checked with the case
+        if choices and value not in choices:
+            listed = " or ".join(f'"{choice}"' for choice in choices)
+            raise AxisError(f"must be {listed}, got {value!r}{hint(value, choices)}")
+        if quantity is None or value == "auto":
+            continue
+        if isinstance(value, bool | str):
+            raise AxisError(f"must be a number{' in ' + unit if unit else ''}, got {value!r}")
+        try:
+            quantity.check(value)
+        except ValueError as error:
+            raise AxisError(str(error)) from None
     return Axis(key=key, values=values, scale=scale, unit=unit)
 
 
@@ -247,17 +267,6 @@ def read_inline(model: type[ModelT], given: Mapping[str, Any], example: str) -> 
         raise AxisError(f"{'; '.join(reasons)}; {example}") from None
 
 
-def _listed(given: list[Any]) -> tuple[Any, ...]:
-    if not given:
-        raise AxisError("has no values: the list is empty; give one or more")
-    if any(isinstance(value, list | dict) for value in given):
-        raise AxisError("must be a list of single values, got lists or tables in it")
-    if len(set(map(repr, given))) < len(given):
-        twice = next(value for value in given if given.count(value) > 1)
-        raise AxisError(f"has the value {twice!r} twice; leave one out")
-    return tuple(float(v) if isinstance(v, int) and not isinstance(v, bool) else v for v in given)
-
-
 def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> tuple[tuple[float, ...], str]:
     wanted = read_inline(Range, given, "a range is { from = 1.0, to = 4.0, count = 13 }")
     if quantity is None:
@@ -284,23 +293,6 @@ def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> t
         spaced = np.geomspace(low, high, count)
     # Fifteen digits: 0.30000000000000004 is 0.3, on every machine.
     return tuple(float(f"{value:.15g}") for value in spaced), wanted.scale
-
-
-def _check(field: FieldInfo, quantity: Quantity | None, unit: str, value: Any) -> None:
-    """Refuse a value that the key can never have; rules between keys are checked with the case."""
-    if quantity is None:
-        choices = choices_of(field.annotation)
-        if choices and value not in choices:
-            listed = " or ".join(f'"{choice}"' for choice in choices)
-            raise AxisError(f"must be {listed}, got {value!r}{hint(value, choices)}")
-        return
-    if isinstance(value, bool) or (isinstance(value, str) and value != "auto"):
-        raise AxisError(f"must be a number{' in ' + unit if unit else ''}, got {value!r}")
-    if not isinstance(value, str):
-        try:
-            quantity.check(value)
-        except ValueError as error:
-            raise AxisError(str(error)) from None
 
 
 #: units in which people say the values of a key: from which value on, the unit, the factor

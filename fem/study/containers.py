@@ -64,11 +64,7 @@ class ContainerCache:
         self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
-        """The container of a case, built if it is missing; from one that differs little, where that serves.
-
-        Raises:
-            CaseError, MeshError: bad input.
-        """
+        """The container of a case, built if it is missing; from one that differs little, where that serves."""
         key = container_key(case)
         with self._lock:
             earlier = self._held.pop(key, None)
@@ -103,11 +99,7 @@ _PENALTIES: dict[Hashable, float] = {}
 
 
 def penalty_of(case: Case) -> float | None:
-    """Normal penalty of a case, chosen where it says "auto" [Pa/m]; None of a slab, which has none.
-
-    Raises:
-        CaseError, MeshError: bad input.
-    """
+    """Normal penalty of a case, chosen where it says "auto" [Pa/m]; None of a slab, which has none."""
     if case.floor.is_slab:
         return None
     key = container_key(case), case.contact.normal_penalty_Pa_m

@@ -100,11 +100,7 @@ class RandomQuantity:
 
 
 def read_random(key: str, entry: Any) -> RandomQuantity:
-    """One entry of `[random]`: a distribution, or a list of values that are equally likely.
-
-    Raises:
-        AxisError: with the reason why it cannot be used.
-    """
+    """One entry of `[random]`: a distribution, or values that are equally likely; AxisError where it is neither."""
     if isinstance(entry, list):
         return RandomQuantity(key=key, choices=read_axis(key, entry))
     example = 'for instance { distribution = "uniform", from = 0.3, to = 0.4 }'
@@ -157,9 +153,7 @@ def draw_shares(
 def held_inputs(cases: Sequence[Case], varied: Collection[str]) -> str:
     """How friction falls and the motion begins in all cases: "with mu_k = mu_s/2 falling at once, no ramp".
 
-    Args:
-        cases: some of the study, such as those at the ends of its axes.
-        varied: keys that the study varies by themselves; they are not held.
+    Keys in `varied` are not held.
     """
     contacts, friction, law = [case.contact for case in cases], "", ""
     slips, speeds = (

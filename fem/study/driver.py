@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
@@ -104,8 +104,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
         CaseError: a record or mesh with the name of a result, a file that is no motion.
         FolderError: the folder holds something else, or an unfinished study (without `resume` or `force`).
         FolderLockedError: another process writes into it.
-        WorkersLostError: a worker died; what was computed is kept.
-        OutputError: the disk is full, the folder was removed; what was written is kept.
+        WorkersLostError, OutputError: a worker died, the disk is full, the folder was removed; what is there is kept.
     """
     kind, force, resume = study.kind, options.get("force", False), options.get("resume", False)
     for case in (*study.cases, *study.motions):
@@ -140,11 +139,7 @@ def run_study(study: Study[ResultT], folder: Path, **options: Unpack[StudyOption
 
 
 def read_study(folder: Path, kind: ResultKind, result: type[ResultT]) -> ResultT:
-    """The result of a study in a folder, finished or interrupted.
-
-    Raises:
-        FolderError: there is none, it is damaged, or it was killed before it could say how far it came.
-    """
+    """The result of a study in a folder, finished or interrupted; FolderError for none, or one that was killed."""
     place = folder / kind.mark
     content = read_result(place, kind)
     if content.get("status") == "running":
@@ -157,14 +152,9 @@ def read_study(folder: Path, kind: ResultKind, result: type[ResultT]) -> ResultT
 @contextmanager
 def runner_of(**options: Unpack[StudyOptions]) -> Iterator[Runner]:
     """What runs the cases of a study; nothing stops it."""
-    with ExitStack() as stack:
-        jobs = options.get("jobs") or cores()
-        given = options.get("workers_of")
-        yield Runner(
-            workers_of=given or stack.enter_context(LocalWorkers(jobs)),
-            reporter=options.get("reporter") or Reporter(),
-            jobs=jobs,
-        )
+    jobs, given, reporter = options.get("jobs") or cores(), options.get("workers_of"), options.get("reporter")
+    with nullcontext(given) if given else LocalWorkers(jobs) as workers_of:
+        yield Runner(workers_of=workers_of, reporter=reporter or Reporter(), jobs=jobs)
 
 
 def hash_of(request: Any) -> str:
@@ -211,12 +201,8 @@ class LoggedRuns(Generic[ItemT]):
     def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
         """Note the rows of earlier attempts, and run the items that have none.
 
-        Args:
-            runner: says when to stop.
-            batches: of items that are not noted; each is asked for when all rows before are noted.
-
-        Raises:
-            FolderLostError: the log was removed; OSError: it cannot be written.
+        Each batch, of items that are not noted, is asked for when all rows before are noted. FolderLostError where the
+        log was removed, OSError where it cannot be written.
         """
         there, known = read_lines(self.path, self.columns), dict[str, str]()
         for line in there:
@@ -239,7 +225,11 @@ class LoggedRuns(Generic[ItemT]):
                     break
                 self.told(len(items))
                 for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
-                    lines = [self._line(item, row) for item, row in zip(chunk, rows, strict=True)]
+                    keys, logged = [tuple(self.key(item)) for item in chunk], map(self.logged, rows)
+                    lines = [
+                        line_of((*key, *(row[name] for name in [*self.columns][len(key) :])))
+                        for key, row in zip(keys, logged, strict=True)
+                    ]
                     if os.fstat(file.fileno()).st_nlink == 0:
                         raise FolderLostError(self.path.parent)
                     data = "".join(f"{line}\n" for line in lines).encode()
@@ -274,7 +264,3 @@ class LoggedRuns(Generic[ItemT]):
     def _note(self, item: ItemT, line: str) -> None:
         self.note(line)
         self.lines[self._id(item)] = line
-
-    def _line(self, item: ItemT, row: Row) -> str:
-        key, cells = tuple(self.key(item)), self.logged(row)
-        return line_of((*key, *(cells[name] for name in [*self.columns][len(key) :])))

@@ -110,10 +110,7 @@ TAIL = 8.0  #: deviations from the median at which the tails are cut
 def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArray) -> Lognormal | None:
     """The lognormal curve of largest likelihood, by Fisher's scoring of the probit regression.
 
-    None where there is none: a step, no events, a falling curve.
-
-    Args:
-        strengths: (n,) positive; overturned: (n,) counts; draws: (n,) of which.
+    Positive strengths, how many of how many draws overturned, all (n,). None for a step, no events, a falling curve.
     """
     logarithms = np.log(strengths)
     middle = float(np.average(logarithms, weights=np.maximum(draws, 1e-9)))
@@ -178,11 +175,8 @@ def count_point(
         confidence=ensemble.confidence,
         independent=None if ensemble.motions is None else ensemble.replicates,
     )
-    region = "undecided"
-    if share.high <= ensemble.probability:
-        region = "below"
-    elif share.low > ensemble.probability:
-        region = "above"
+    above = "above" if share.low > ensemble.probability else "undecided"
+    region = "below" if share.high <= ensemble.probability else above
     slid = () if slips is None else slips[(codes == Ending.STANDING) & np.isfinite(slips)]
     row = {"probability": share.value, "low": share.low, "high": share.high, "region": region}
     row |= {SLIPPED: max(map(float, slid), default=None)}
@@ -190,11 +184,7 @@ def count_point(
 
 
 def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRow]) -> Fragility | None:
-    """The curve over the only axis: where it falls, the fitted lognormal, its band; None with more axes.
-
-    Args:
-        codes: (points, draws).
-    """
+    """The curve over the only axis: where it falls, the fitted lognormal; None with more axes."""
     if len(ensemble.axes) != 1:
         return None
     strengths = np.array(ensemble.axes[0].values, dtype=float)

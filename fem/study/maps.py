@@ -6,7 +6,7 @@ that overturn. The title says what the map holds fixed of the unknown inputs.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import islice, product
@@ -72,43 +72,35 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
 
 
 def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
-    """One map.
+    """One map of a sweep with two axes or more.
 
-    Args:
-        table: of the sweep, which has two axes or more.
-        kind: outcome (the share of copies that overturns, and the outcome) | rotation (largest, over the slenderness
-            angle) | slip (largest) | joint_slip (largest between loose boxes); the last three where it stands.
-        choice: of axes that the sweep has, and of values on them.
+    `kind`: outcome (the share of copies that overturns, and the outcome) | rotation (largest, over the slenderness
+    angle) | slip (largest) | joint_slip (largest between loose boxes); the last three where it stands.
     """
     share, unsure = shares_of(table), table.columns.get("unsure")
+    stands = ~np.isin(table.outcome, list(ENDINGS))
     #: words, what joins them to a panel's name, values, look
     layers: list[tuple[str, str, NDArray[Any], Mapping[str, str] | None]]
     look: dict[str, Any]
     if kind == "outcome":
-        unsure = None
         outcome = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome])
-        title, look, layers = (
-            "Outcome",
-            {"colours": {}, "columns": 3},
-            [("Outcome", "; ", outcome, OUTCOME_COLOURS)],
-        )
+        layers = [("Outcome", "; ", outcome, OUTCOME_COLOURS)]
+        title, unsure, look = "Outcome", None, {"colours": {}, "columns": 3}
         if share is not None:  # beside that of the outcomes
             title, look["columns"] = "Does it overturn?", 2
             layers = [(WORDS_OF_SHARES, "\n", share, SHARE_COLOURS), *layers]
+    elif kind == "rotation":
+        title = "Largest rotation over slenderness angle, where it stands"
+        layers = [("", "", np.where(stands, table[TURNED], np.nan), None)]
+        look = {"colours": matplotlib.colormaps["viridis"], "norm": Normalize(0.0, 1.0)}
+        look["bar"] = "rotation ratio [-]"
     else:
-        stands = ~np.isin(table.outcome, list(ENDINGS))
-        if kind == "rotation":
-            title, values = "Largest rotation over slenderness angle, where it stands", table[TURNED]
-            look = {"colours": matplotlib.colormaps["viridis"], "norm": Normalize(0.0, 1.0)}
-            look["bar"] = "rotation ratio [-]"
-        else:
-            title, column = SLIPS[kind]
-            slip = 1e3 * np.where(stands, table[column], np.nan)
-            values = np.maximum(slip, LEAST_SLIP_MM)
-            norm = LogNorm(LEAST_SLIP_MM, max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM))
-            look = {"colours": matplotlib.colormaps["cividis"], "norm": norm}
-            look["bar"] = f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)"
-        layers = [("", "", np.where(stands, values, np.nan), None)]
+        title, column = SLIPS[kind]
+        slip = 1e3 * np.where(stands, table[column], np.nan)
+        layers = [("", "", np.maximum(slip, LEAST_SLIP_MM), None)]
+        norm = LogNorm(LEAST_SLIP_MM, max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM))
+        look = {"colours": matplotlib.colormaps["cividis"], "norm": norm}
+        look["bar"] = f"slip [mm] (below {rounded(LEAST_SLIP_MM)}: none)"
     grids, spanned, left_out = _grids(table, choice, most=MOST_PANELS // len(layers))
     panels = [
         Panel(
@@ -141,11 +133,7 @@ def safe_boundary(table: SweepTable, answer: StudyAnswer[Answer], choice: MapCho
         fell = np.nan if found.overturned_from is None else found.overturned_from
         unsure = min([low for low, _ in found.unsure], default=np.inf)
         safe = known[known < min(unsure, np.inf if np.isnan(fell) else fell)]
-        name = ", ".join(
-            f"{axis_name(axis)} {value_label(row.point[axis.key])} {axis.unit}".strip()
-            for axis in answer.others
-            if axis is not other
-        )
+        name = _held((axis, row.point[axis.key]) for axis in answer.others if axis is not other)
         sure_to = safe[-1] if safe.size else known[0]
         groups.setdefault(name, []).append((float(row.point[other.key]), float(sure_to), float(fell)))
     columns = min(2, len(groups))
@@ -240,28 +228,31 @@ def _grids(
 ) -> tuple[list[tuple[str, Part]], tuple[MapAxis, MapAxis], int]:
     """For each panel its name and what takes its part of a column; the axes; how many panels are left out."""
     across, up = _plane(table, choice)
-    others = [(k, axis) for k, axis in enumerate(table.axes) if axis not in (across, up)]
+    others = [axis for axis in table.axes if axis not in (across, up)]
     choices = [
-        [(k, axis, value) for value in axis.values if value == choice.fixed.get(axis.key, value)]
-        for k, axis in others
+        [(axis, value) for value in axis.values if value == choice.fixed.get(axis.key, value)]
+        for axis in others
     ]
     swapped = table.axes.index(across) < table.axes.index(up)
 
-    def plane(pick: Mapping[int, int], column: NDArray[Any]) -> NDArray[Any]:
-        grid = column.reshape(table.shape)[tuple(pick.get(k, slice(None)) for k in range(len(table.axes)))]
+    def plane(held: Mapping[str, Any], column: NDArray[Any]) -> NDArray[Any]:
+        places = (
+            axis.values.index(held[axis.key]) if axis.key in held else slice(None) for axis in table.axes
+        )
+        grid = column.reshape(table.shape)[tuple(places)]
         return grid.T if swapped else grid
 
     grids: list[tuple[str, Part]] = [
-        (
-            ", ".join(
-                f"{axis_name(axis)} {value_label(value)} {axis.unit}".strip() for _, axis, value in held
-            ),
-            partial(plane, {k: axis.values.index(value) for k, axis, value in held}),
-        )
+        (_held(held), partial(plane, {axis.key: value for axis, value in held}))
         for held in islice(product(*choices), most)
     ]
     spanned = _map_axis(across, table.info.case), _map_axis(up, table.info.case)
     return grids, spanned, math.prod(map(len, choices)) - len(grids)
+
+
+def _held(values: Iterable[tuple[Axis, Any]]) -> str:
+    """Values on axes, as the name of a panel."""
+    return ", ".join(f"{axis_name(axis)} {value_label(one)} {axis.unit}".strip() for axis, one in values)
 
 
 def _map_axis(axis: Axis, base: str) -> MapAxis:
@@ -293,16 +284,28 @@ MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
 def ensemble_figures(
     ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None
 ) -> dict[str, str]:
-    """Figures as SVG documents, by name."""
+    """Over one axis the counts and the lognormal curve, over more the boundary: SVG documents, by name."""
+    names = ", ".join(
+        quantity.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ")
+        for quantity in ensemble.random
+        if quantity.key != MOTION_FILE
+    )
+    ranges = f"; {len(ensemble.unknown)} unknown inputs drawn over their ranges" if ensemble.unknown else ""
+    held = f"; {ensemble.held}" if ensemble.held else ""
+    motions = ensemble.motions
+    floor = "not the floor's motion" if motions is None else f"{len(motions.values)} motions equally often"
+    said = f"{ensemble.draws} draws a point ({ensemble.sampling}); random: {names}{ranges}{held}; {floor}"
     with style.house_style():
         if len(ensemble.axes) == 1:
-            return {"fragility": style.svg_of(_draw_fragility(ensemble, points, fragility))}
-        return {"boundary": style.svg_of(_draw_boundary(ensemble, points))}
+            return {"fragility": style.svg_of(_draw_fragility(ensemble, points, fragility, said))}
+        return {"boundary": style.svg_of(_draw_boundary(ensemble, points, said))}
 
 
-def _draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None) -> Figure:
+def _draw_fragility(
+    ensemble: Ensemble, points: Sequence[PointRow], fragility: Fragility | None, said: str
+) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
-    statement = fill(_statement(ensemble), SMALL_LINE)
+    statement = fill(said, SMALL_LINE)
     figure, (axes,) = style.panels((3.2,), header=3 + statement.count("\n"))
     axis = ensemble.axes[0]
     style.head(figure, ensemble.title or ensemble.name, statement)
@@ -330,17 +333,13 @@ def _draw_fragility(ensemble: Ensemble, points: Sequence[PointRow], fragility: F
     return figure
 
 
-def _draw_boundary(ensemble: Ensemble, points: Sequence[PointRow]) -> Figure:
+def _draw_boundary(ensemble: Ensemble, points: Sequence[PointRow], said: str) -> Figure:
     """Points that overturn with at most the given probability, with more, or undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
     shape = (len(outside), len(down.values), len(across.values))
     limit = f"{ensemble.probability:g}"
-    words = {
-        "below": f"at most {limit}",
-        "undecided": "not decided by the draws",
-        "above": f"more than {limit}",
-    }
+    words = (f"at most {limit}", "not decided by the draws", f"more than {limit}")
     codes = np.array([list(COLOURS).index(point["region"]) for point in points]).reshape(shape)
     shares = [point["probability"] for point in points]
     texts = np.array(["?" if share is None else f"{100.0 * share:.0f}" for share in shares]).reshape(shape)
@@ -353,28 +352,12 @@ def _draw_boundary(ensemble: Ensemble, points: Sequence[PointRow]) -> Figure:
         )
         for k, held in enumerate(outside)
     ]
-    x = replace(
-        _map_axis(across, ensemble.base.name),
-        label=f"{axis_label(across)}   (numbers: % that {falling_in_words(ensemble.limit_slip_m, past=True)})",
-    )
+    x, y = (_map_axis(axis, ensemble.base.name) for axis in (across, down))
+    numbers = f"(numbers: % that {falling_in_words(ensemble.limit_slip_m, past=True)})"
     return draw_heat_map(
-        x,
-        _map_axis(down, ensemble.base.name),
+        replace(x, label=f"{x.label}   {numbers}"),
+        y,
         maps,
-        title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble), LINE)}",
-        colours={words[region]: colour for region, colour in COLOURS.items()},
+        title=f"{ensemble.title or ensemble.name}\n{fill(said, LINE)}",
+        colours=dict(zip(words, COLOURS.values(), strict=True)),
     )
-
-
-def _statement(ensemble: Ensemble) -> str:
-    names = ", ".join(
-        quantity.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ")
-        for quantity in ensemble.random
-        if quantity.key != MOTION_FILE
-    )
-    ranges = f"; {len(ensemble.unknown)} unknown inputs drawn over their ranges" if ensemble.unknown else ""
-    held = f"; {ensemble.held}" if ensemble.held else ""
-    drawn = f"{ensemble.draws} draws a point ({ensemble.sampling})"
-    motions = ensemble.motions
-    floor = "not the floor's motion" if motions is None else f"{len(motions.values)} motions equally often"
-    return f"{drawn}; random: {names}{ranges}{held}; {floor}"

@@ -64,16 +64,10 @@ class FloorMotionPair:
 def read_motion_set(
     base: Case, axes: Iterable[Axis], runner: Runner | None = None
 ) -> tuple[FloorMotionPair, ...]:
-    """Read the motions of a set, as the base case takes them; none without a set.
+    """Read the motions of the set that one of some axes may hold, as the base case takes them; none without a set.
 
-    Args:
-        base: case of the study.
-        axes: of which one may hold a set.
-        runner: whose workers read a large set; None: this process.
-
-    Raises:
-        CaseError: a file that cannot be used, components that were not sampled together, two motions of one file, two
-            files that hold the same motion.
+    The workers of a runner read a large set. CaseError for a file that cannot be used, components that were not sampled
+    together, two motions of one file, two files that hold the same motion.
     """
     axis = set_axis(axes)
     keys = [with_following([axis], {axis.key: name}) for name in axis.values] if axis else []
@@ -122,8 +116,7 @@ def write_motions(
 ) -> dict[str, Any]:
     """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns what the result says of them.
 
-    Args:
-        outcomes: of each motion, by these names.
+    `outcomes`: of each motion, by the names of what is counted.
     """
     measures = [{**motion.numbers(), **outcome} for motion, outcome in zip(motions, outcomes, strict=True)]
 

@@ -85,13 +85,9 @@ class Runner:
     ) -> Generator[tuple[list[ItemT], list[Row]], None, None]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
-        Args:
-            what: the items, for the line of progress.
-            items: in an order in which those of one container are neighbours.
-            make: the case of an item; for processes it must be picklable.
-            model_of: the model of its case.
-            work: what is done with some items at a time, picklable; default: their runs. Other work repeats a run with
-                its band and margin: it is handed out one by one, and gives no row where it was stopped.
+        Items stand in an order in which those of one container are neighbours; `make` gives the case of one, and is
+        picklable. Other `work` than runs may take long: it is handed out one by one, and gives no row where it was
+        stopped.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
@@ -144,12 +140,9 @@ class NamedStages:
     def begin(
         self, name: str, runs: int, *, up_to: bool = False, weight: float = 1.0, seconds: float = 0.0
     ) -> None:
-        """A stage of some runs, or of more of them, begins.
+        """A stage of some runs, or of more of them, begins; `up_to`: it may need fewer.
 
-        Args:
-            name, runs: of the stage; `up_to`: it may need fewer.
-            weight: of one of them, over those before.
-            seconds: that they take, where these say nothing of it.
+        `weight`: of one of them, over those before; `seconds`: that they take, where these say nothing of it.
         """
         self.end()
         if not runs or len(self.names) < 2:

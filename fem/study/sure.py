@@ -6,11 +6,10 @@ effect is what the sweep shows.
 """
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from operator import itemgetter
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,7 +39,7 @@ from fem.run.sureness import (
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.study.axes import Axis, lines_along, shape_of
 from fem.study.containers import container_key
-from fem.study.design import SMALL, Item, Sweep
+from fem.study.design import SMALL, Item, Sweep, Threshold
 from fem.study.runner import Runner, boxes_in
 from fem.study.sweep_table import FIGURES, TRIED_COLUMNS
 from fem.study.table import Columns, row_of
@@ -184,22 +183,6 @@ class Copies:
             nowhere: BoolArray = np.zeros(self._sweep.count, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
-    def _sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
-        """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first.
-
-        Both coefficients of friction moved a little at once count as the first of them.
-        """
-        if self._kind[cell] not in DECIDED:
-            return UNSURE, ()
-        rows = [row for _, row in sorted(self.rows.get(cell, {}).items())]
-        most = max((row.level for row in rows), default=SAME)
-        levels = [row.level if row.level == most else SAME for row in rows]
-        alone = [
-            replace(change, values=dict([*change.values.items()][:1])) if change.share == SMALL else change
-            for change in (row.copy.change for row in rows)
-        ]
-        return how_sure(levels), tuple(deciding_inputs(levels, alone))
-
     def band(self) -> tuple[dict[str, Any], Iterator[tuple[Any, ...]]]:
         """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`.
 
@@ -207,7 +190,21 @@ class Copies:
         around this one, counts as the cell, and so does one that failed; draws count where some were tried.
         """
         sweep, cells = self._sweep, range(self._sweep.count)
-        found = [self._sureness(cell) for cell in cells]
+        found = []  # how sure a cell is, and the inputs that decide: the smallest change that turns its outcome first
+        for cell in cells:
+            rows = [row for _, row in sorted(self.rows.get(cell, {}).items())]
+            most = max((row.level for row in rows), default=SAME)
+            levels = [row.level if row.level == most else SAME for row in rows]
+            # both coefficients of friction moved a little at once count as the first of them
+            alone = [
+                replace(change, values=dict([*change.values.items()][:1]))
+                if change.share == SMALL
+                else change
+                for change in (row.copy.change for row in rows)
+            ]
+            decided = self._kind[cell] in DECIDED
+            by = tuple(deciding_inputs(levels, alone)) if decided else ()
+            found.append((how_sure(levels) if decided else UNSURE, by))
         unsure = np.array([word == UNSURE for word, _ in found])
         everywhere = sweep.perturbation.cells != "near"  # else nothing is known of a cell that was left out
         words = [
@@ -250,19 +247,15 @@ class Copies:
         }
         return added, values()
 
-    def compute(self, runner: Runner, path: Path, told: Callable[[int], None]) -> str:
-        """Compute the copies that the log at `path` does not hold; the rows of all, as a table.
-
-        `told` is that of `LoggedRuns`.
-        """
+    def compute(self, runner: Runner, **logged: Any) -> str:
+        """Compute the copies that the log does not hold; the rows of all, as a table. `logged`: see `refine`."""
 
         def key(item: Item) -> tuple[int, int, str]:
             changed = (f"{key}={value!r}" for key, value in item.unknown.items())
             return item.cell, item.draw, " ".join(changed)
 
-        log = self._sweep.runs(
-            what=COPIES, told=told, path=path, columns=COLUMNS, key=key, ids=2, note=self._note
-        )
+        own = {"what": COPIES, "columns": COLUMNS, "key": key, "ids": 2}
+        log = self._sweep.runs(**own, **logged, note=self._note)
         log.run(runner, self._missing())
         return log.table()
 
@@ -287,29 +280,26 @@ class Copies:
         self, among: BoolArray, begin: BoolArray, small: BoolArray, *, drawn: bool
     ) -> Iterator[list[Item]]:
         """Missing draws, or all other copies: of the cells to begin with, then around those that a change turns."""
-        reached: dict[str, BoolArray] = {}
-
-        def reach(copy: Copy) -> BoolArray:
-            """The cells that have this change."""
-            return reached.setdefault(copy.name, among & (small if copy.small else begin))
-
-        here = among & begin
+        sweep, here = self._sweep, among & begin
+        reached: dict[str, BoolArray] = {}  # by change, the cells that have it
         while here.any():
             items = []
             for cell in np.flatnonzero(here).tolist():
-                known, item = self.rows.get(cell, {}), self._sweep.item(cell)
+                known, item = self.rows.get(cell, {}), sweep.item(cell)
                 for number, copy in enumerate(self.of(cell)):
-                    if number not in known and copy.drawn == drawn and reach(copy).flat[cell]:
-                        made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
-                        items.append((self._sweep.container_of(item), copy.name, cell, made))
+                    if number not in known and copy.drawn == drawn:
+                        own = reached.setdefault(copy.name, among & (small if copy.small else begin))
+                        if own.flat[cell]:
+                            made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
+                            items.append((sweep.container_of(item), copy.name, cell, made))
             # of one container together, and within it of one change
             yield [item for *_, item in sorted(items, key=itemgetter(0, 1, 2))]
             here = np.zeros_like(among)
             for copy, turned in self.turned.values():
                 if copy.drawn == drawn:
-                    shaped = turned.reshape(self._sweep.shape)
-                    more = around(self._sweep.axes, shaped, REACH) & among & ~reach(copy)
-                    reached[copy.name] = reach(copy) | more
+                    own = reached.setdefault(copy.name, among & (small if copy.small else begin))
+                    more = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~own
+                    reached[copy.name] = own | more
                     here |= more
 
 
@@ -319,13 +309,9 @@ def _size(axes: Sequence[Axis], reach: int = 1) -> tuple[int, ...]:
 
 
 def near_cells(axes: Sequence[Axis], kind: IntArray, ratio: FloatArray, close: float) -> BoolArray:
-    """Cells next to one of another kind, or standing and close to overturning.
+    """Cells next to one of another kind, or standing and with a rotation ratio that counts as close.
 
-    Args:
-        axes: of the sweep.
-        kind: endings, in the shape of the axes.
-        ratio: largest rotation over the slenderness angle, in the shape of the axes; nan where there is none.
-        close: rotation ratio that counts as close.
+    Endings and ratios have the shape of the axes; a ratio is nan where there is none.
     """
     size = _size(axes)
     highest = ndimage.maximum_filter(kind, size=size, mode="nearest")
@@ -374,21 +360,16 @@ CHANGES: Columns = {name: types_of(Change)[name] for name in ("low", "high", "va
 
 
 def refine(
-    runner: Runner, sweep: Sweep, runs: Mapping[int, RunShown], log: Path, told: Callable[[int], None]
-) -> list[dict[str, Any]] | None:
-    """Locate every change of outcome along the axis asked for; cases that the log holds are not computed again.
+    runner: Runner, sweep: Sweep, wanted: Threshold, runs: Mapping[int, RunShown], **logged: Any
+) -> list[dict[str, Any]]:
+    """Locate every change of outcome along the axis asked for: the rows of `thresholds.csv`, by `change_columns`.
 
-    `told` is that of `LoggedRuns`.
-
-    Returns:
-        The rows of `thresholds.csv`, by `change_columns`; None where none are wanted.
+    `logged`: where the log of `LoggedRuns` is and what it tells; cases that it holds are not computed again.
     """
-    wanted = sweep.threshold
-    if wanted is None:
-        return None
     along = wanted.axis
     axis = next(axis for axis in sweep.axes if axis.key == along)
-    least = least_width(axis.numbers, wanted.resolution)
+    width: dict[str, Any] = {"resolution": wanted.resolution, "inner": wanted.inner}
+    width["least"] = least_width(axis.numbers, wanted.resolution)
     #: outcomes by value along the axis, by the first cell of each line of cells
     lines = {
         line[0]: {float(value): runs[cell].kind.word for value, cell in zip(axis.values, line, strict=True)}
@@ -403,17 +384,11 @@ def refine(
         return [
             item._replace(point={**item.point, along: value})
             for item in sweep.by_container(lines)
-            for value in values_to_try(
-                lines[item.cell], resolution=wanted.resolution, inner=wanted.inner, least=least
-            )
+            for value in values_to_try(lines[item.cell], **width)
         ]
 
-    def key(item: Item) -> tuple[int, float]:
-        return item.cell, item.point[along]
-
-    named = {"what": BETWEEN, "told": told, "path": log, "columns": TRIED_COLUMNS}
-    tried = sweep.runs(**named, key=key, ids=2, note=note)
-    tried.run(runner, iter(between_cells, []))
+    own = {"what": BETWEEN, "columns": TRIED_COLUMNS, "key": lambda item: (item.cell, item.point[along])}
+    sweep.runs(**own, **logged, ids=2, note=note).run(runner, iter(between_cells, []))
     return [
         sweep.point(first) | {key: getattr(change, key) for key in CHANGES}
         for first in sorted(lines)

@@ -74,11 +74,7 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
-    """Refuse more cells than anybody asks for on purpose.
-
-    Raises:
-        CaseError: says how many, and about how long and how much disk they would take.
-    """
+    """Refuse more cells than anybody asks for on purpose: CaseError with the time and the disk they would take."""
     if sweep.count <= MOST_CELLS or force:
         return
     corners = [expected_s(case) for case in sweep.cases] or [expected_s(sweep.base)]
@@ -157,8 +153,8 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     columns: Columns = {"cell": int} | dict.fromkeys((*keys, *sweep.derived), str) | FOUND
     further = [COPIES] * sweep.has_copies + [BETWEEN] * (sweep.threshold is not None)
     stages = NamedStages([CELLS, *further], runner.reporter)
-    named = {"what": CELLS, "told": partial(stages.begin, CELLS), "path": place.path / ROWS}
-    log = sweep.runs(**named, columns=columns, key=key, ids=1, note=note)
+    told: dict[str, Any] = {"path": place.path / ROWS, "told": partial(stages.begin, CELLS)}
+    log = sweep.runs(**told, what=CELLS, columns=columns, key=key, ids=1, note=note)
     place.write_result(begun.to_json())  # with the hash of the band: copies of another are gone
     with_band = (*columns, *band_columns(sweep.axes))
     table = place.path / TABLE
@@ -168,9 +164,12 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     place.remove(TABLE)
     log.run(runner, [sweep.by_container(cells)])
     copies = Copies(sweep, runs) if sweep.has_copies and not stop() else None
-    members = copies.compute(runner, place.path / MEMBERS, partial(stages.begin, COPIES)) if copies else ""
-    told, tried = partial(stages.begin, BETWEEN), place.path / TRIED
-    changes = None if stop() else refine(runner, sweep, runs, tried, told)
+    told = {"path": place.path / MEMBERS, "told": partial(stages.begin, COPIES)}
+    members = copies.compute(runner, **told) if copies else ""
+    changes, wanted = None, sweep.threshold
+    if wanted is not None and not stop():
+        told = {"path": place.path / TRIED, "told": partial(stages.begin, BETWEEN)}
+        changes = refine(runner, sweep, wanted, runs, **told)
     outcomes = Counter(run.outcome or FAILED for run in runs.values())
     result = replace(begun, rows=len(runs), outcomes=dict(sorted(outcomes.items())))
     if stop():
@@ -187,8 +186,8 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         place.write(MEMBERS, members)
     lines = (f"{log.lines[cell,]},{line_of(band)}" for cell, band in enumerate(bands))
     place.write(TABLE, table_of_lines(with_band, lines))
-    if changes is not None and sweep.threshold is not None:
-        place.write(THRESHOLDS, table_of_rows(change_columns(sweep.axes, sweep.threshold.axis), changes))
+    if changes is not None and wanted is not None:
+        place.write(THRESHOLDS, table_of_rows(change_columns(sweep.axes, wanted.axis), changes))
         result = replace(result, changes=len(changes))
     answer = sweep_answer(open_sweep(place.path), place.path)
     if answer:

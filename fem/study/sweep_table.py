@@ -101,8 +101,7 @@ class SweepTable:
 def open_sweep(folder: Path | str) -> SweepTable:
     """Read the folder of a sweep, a running or interrupted one too, and one of an earlier version of the program.
 
-    Raises:
-        FolderError: it is not the folder of a sweep, or it is damaged.
+    FolderError where it is not the folder of a sweep, or it is damaged.
     """
     folder = Path(folder)
     mark = folder / SWEEP.mark
@@ -121,33 +120,28 @@ def open_sweep(folder: Path | str) -> SweepTable:
                 f"table.csv has {len(lines)} rows of {info.cells}; recompute it: "
                 f"python -m fem sweep {info.sweep} --out {folder} --force"
             )
-        return SweepTable(info=info, columns=_columns(info.axes, names, lines))
+        count, words = math.prod(shape_of(info.axes)), WORDS.union(*(axis.following for axis in info.axes))
+        cells = np.array([int(fields[0]) for fields in lines], dtype=np.int64)
+        columns: dict[str, NDArray[Any]] = {}
+        for name, text in zip(names, zip(*lines, strict=True) if lines else [()] * len(names), strict=True):
+            columns[name] = np.full(count, "", dtype=object) if name in words else np.full(count, np.nan)
+            columns[name][cells] = text if name in words else list(map(_number, text))
+        columns["cell"] = np.arange(count)
+        grids = np.meshgrid(*(np.array(axis.values, dtype=object) for axis in info.axes), indexing="ij")
+        for axis, grid in zip(info.axes, grids, strict=True):
+            has_words = len(axis.numbers) < len(axis.values)
+            columns[axis.key] = grid.ravel() if has_words else grid.ravel().astype(float)
+        return SweepTable(info=info, columns=columns)
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
         raise FolderError(f"{mark}: damaged, its axes or table are of another sweep ({error})") from None
 
 
-def _columns(
-    axes: Sequence[Axis], names: Sequence[str], lines: Sequence[Sequence[str]]
-) -> dict[str, NDArray[Any]]:
-    def number(text: str) -> float:
-        """A field as a number: nan for an empty one and a word such as "auto", 1 and 0 for true and false."""
-        try:
-            return float({"true": 1.0, "false": 0.0}.get(text, text))
-        except ValueError:
-            return np.nan
-
-    count, words = math.prod(shape_of(axes)), WORDS.union(*(axis.following for axis in axes))
-    cells = np.array([int(fields[0]) for fields in lines], dtype=np.int64)
-    columns: dict[str, NDArray[Any]] = {}
-    for name, text in zip(names, zip(*lines, strict=True) if lines else [()] * len(names), strict=True):
-        columns[name] = np.full(count, "", dtype=object) if name in words else np.full(count, np.nan)
-        columns[name][cells] = text if name in words else list(map(number, text))
-    columns["cell"] = np.arange(count)
-    grids = np.meshgrid(*(np.array(axis.values, dtype=object) for axis in axes), indexing="ij")
-    for axis, grid in zip(axes, grids, strict=True):
-        has_words = any(isinstance(value, str | bool) for value in axis.values)
-        columns[axis.key] = grid.ravel() if has_words else grid.ravel().astype(float)
-    return columns
+def _number(text: str) -> float:
+    """A field as a number: nan for an empty one and a word such as "auto", 1 and 0 for true and false."""
+    try:
+        return float({"true": 1.0, "false": 0.0}.get(text, text))
+    except ValueError:
+        return np.nan
 
 
 #: what a threshold tries between cells, by the first cell of the line

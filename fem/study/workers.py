@@ -72,11 +72,8 @@ class LocalWorkers:
     row takes two fifths of a rigid case: with threads, two cores are 1.3 times as fast as one. Many cases are
     therefore shared by one thread of this process, which works while the others start, and one process for each other
     core. They are forks of this process where it has no other thread yet, as at the command line. Started processes are
-    kept for later cases; leaving the context ends them at once, as a case may take an hour.
-
-    Args:
-        jobs: cores to use.
-        worth: number of cases of a model from which new processes are started; default: `WORTH_PROCESSES`.
+    kept for later cases; leaving the context ends them at once, as a case may take an hour. `worth`: number of cases of
+    a model from which new processes are started.
     """
 
     def __init__(self, jobs: int, worth: Mapping[str, float] | None = None) -> None:
@@ -146,16 +143,8 @@ def hand_out(
 ) -> Iterator[tuple[list[ItemT], FoundT]]:
     """Let pools work on chunks of items; yields chunks and their results as they are ready, in any order.
 
-    Args:
-        items: in the order in which they are started.
-        work: from a chunk to its result; for processes it must be picklable.
-        pools: of workers.
-        at_a_time: items of a chunk.
-        stop: asked repeatedly; true ends the work.
-        finish: whether running chunks are then completed, of workers that answer within `ENDING_S`.
-
-    Raises:
-        WorkersLostError: a process died.
+    `work` is picklable. `stop` is asked repeatedly; true ends the work, and running chunks are completed if `finish`,
+    of workers that answer within `ENDING_S`. WorkersLostError where a process died.
     """
     remaining, until = iter(items), math.inf
     waiting: dict[Future[FoundT], tuple[Pool, list[ItemT]]] = {}
