@@ -18,16 +18,7 @@ from fem.html.page import text_of
 from fem.results.figures import SLIPPED
 from fem.results.outcome import NOT_STANDING, Ending, ending_of
 from fem.runtime.units import MILLIMETRES, plain_number
-from fem.study.axes import (
-    Axis,
-    axis_name,
-    in_words,
-    lines_along,
-    place_in_words,
-    point_of,
-    set_axis,
-    sign_axes,
-)
+from fem.study.axes import SIGNS, Axis, axis_name, in_words, lines_along, place_in_words, point_of, set_axis
 from fem.study.driver import COMPLETED
 from fem.study.fragility import EnsembleResult
 from fem.study.sweep_table import TRIED, TRIED_COLUMNS, SweepTable
@@ -295,7 +286,8 @@ def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
             yield AnswerRow(point=at, found=answer, sentence=sentence)
 
     motions = set_axis(others)
-    kept = [other for other in others if motions is None or other not in sign_axes(others)]
+    opposite = [axis for axis in others if axis.key in SIGNS and len({*map(abs, axis.numbers)}) == 1]
+    kept = [other for other in others if motions is None or other not in opposite]
     outer = [other for other in kept if other is not motions]
     rows = [*rows_of(outer), *rows_of(kept)] if motions and outer else list(rows_of(kept))
     (together,) = rows_of(())

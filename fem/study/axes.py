@@ -109,14 +109,8 @@ def set_axis(axes: Iterable[Axis]) -> Axis | None:
     return next((axis for axis in axes if axis.key == MOTION_FILE), None)
 
 
-def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
-    """The axes that only reverse the sign of a motion."""
-    return [axis for axis in axes if axis.key in SIGNS and len({abs(value) for value in axis.numbers}) == 1]
-
-
-def first_motion(axes: Iterable[Axis]) -> dict[str, Any]:
+def first_motion(axis: Axis | None) -> dict[str, Any]:
     """The keys that set the first motion of a set, the first pair if there is one; none without a set."""
-    axis = set_axis(axes)
     if axis is None:
         return {}
     verticals = axis.following.get(VERTICAL_FILE, ())

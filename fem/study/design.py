@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from itertools import product
+from itertools import islice, product
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from fem.case.tables.table import CaseTable
 from fem.case.tables.unknown_inputs import INPUTS, ranges_of
 from fem.case.uncertainty import InputChange, as_changed, drawn_values
 from fem.case.validation import CaseError
-from fem.study.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
+from fem.study.axes import MOTION_FILE, Axis, point_of, set_axis, shape_of, with_following
 from fem.study.containers import penalty_of
 from fem.study.derived import FREE, Expression, number_of, with_derived
 from fem.study.draws import RandomQuantity, Sampling, draw_shares, held_inputs
@@ -216,12 +216,8 @@ class DesignResult(StudyResult):
 
 #: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
 Unknown = Literal["drawn", "held"]
+TRIED = 64  #: cases that are built to find bad values before anything is computed
 STREAM = 1  #: of random numbers of the unknown inputs
-
-
-def sets_among(random: Iterable[RandomQuantity]) -> list[Axis]:
-    """The set of motions among what is random, as a list of one or none."""
-    return [one.choices for one in random if one.choices is not None and one.key == MOTION_FILE]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -276,6 +272,11 @@ class Design:
         """Keys that vary by themselves: of the axes, and what is random."""
         return {*self.axis_keys, *(quantity.key for quantity in self.random)}
 
+    @property
+    def motions(self) -> Axis | None:
+        """The set of motions, on an axis or drawn; None where there is one motion."""
+        return set_axis([*self.axes, *filter(None, (one.choices for one in self.random))])
+
     @cached_property
     def unknown(self) -> tuple[str, ...]:
         """Keys of the unknown inputs that are drawn over their ranges in [uncertainty] of the case.
@@ -326,7 +327,7 @@ class Design:
         for corner, values in product(product(*ends), drawn):
             point = with_following(self.axes, dict(zip(self.axis_keys, corner, strict=True)))
             own = dict(zip((one.key for one in self.random), values, strict=True))
-            yield Item(0, 0, point, with_following(sets_among(self.random), own))
+            yield Item(0, 0, point, with_following(filter(None, (one.choices for one in self.random)), own))
 
     @cached_property
     def cases(self) -> list[Case]:
@@ -336,6 +337,20 @@ class Design:
             with suppress(CaseError):
                 cases.append(self.make.case(item))
         return cases
+
+    def tried(self, items: Iterable[Item], tables: str, words: Callable[[Any], str]) -> Iterator[Case]:
+        """The cases of the first of some runs; CaseError for one that cannot be used, with what makes it."""
+        for item in islice(items, TRIED):
+            try:
+                yield self.make.case(item)
+            except CaseError as error:
+                values = (
+                    pair for pair in (*item.point.items(), *item.drawn.items()) if pair[0] in self.varied
+                )
+                where = ", ".join(
+                    f"{key} = {one if isinstance(one, str) else words(one)}" for key, one in values
+                )
+                raise CaseError(f"{error}\n{tables}: {where}") from None
 
     def model_of(self, item: Item) -> str:
         """The model of a run."""
@@ -381,11 +396,6 @@ class Ensemble(Design):
     confidence: float
     probability: float  #: of overturning, to which the points are compared
 
-    @property
-    def motions(self) -> Axis | None:
-        """The set of motions that are drawn; None where there is one motion."""
-        return next(iter(sets_among(self.random)), None)
-
     def draws_at(self, cell: int) -> list[Item]:
         """The draws of a point; each motion of a set is drawn equally often, and is a replicate.
 
@@ -399,7 +409,7 @@ class Ensemble(Design):
             quantity.key: quantity.values(shares[:, k]) for k, quantity in enumerate(spread)
         }
         each = self.draws // self.replicates
-        for axis in sets_among(self.random):
+        if axis := self.motions:
             sets = {axis.key: axis.values, **axis.following}
             columns |= {key: [value for value in row for _ in range(each)] for key, row in sets.items()}
         point, rows = self.point(cell), zip(*columns.values(), strict=True)

@@ -15,7 +15,7 @@ from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
-from typing import Any, Generic, TypedDict, TypeVar, Unpack
+from typing import Any, Generic, Self, TypedDict, TypeVar, Unpack
 
 from fem.case.case import Case
 from fem.results.disk import BYTES_BESIDE
@@ -61,6 +61,10 @@ class StudyResult(JsonBlock):
     def state(self) -> str:
         """`finished` once every stage is done, else `interrupted`."""
         return "finished" if self.status in (FAILED, COMPLETED) else "interrupted"
+
+    def interrupted(self, missing: str) -> Self:
+        """This result of a study that was interrupted before what is missing, in words."""
+        return replace(self, status=INTERRUPTED, missing=missing)
 
     @property
     def no_answer_yet(self) -> str | None:

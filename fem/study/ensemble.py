@@ -19,17 +19,8 @@ from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, COUNTED_AS, Ending, counts_of, ending_of
 from fem.study.answers import ensemble_answer
-from fem.study.design import Ensemble, Item, sets_among
-from fem.study.driver import (
-    COMPLETED,
-    FAILED,
-    INTERRUPTED,
-    Study,
-    StudyOptions,
-    hash_of,
-    run_study,
-    runner_of,
-)
+from fem.study.design import Ensemble, Item
+from fem.study.driver import COMPLETED, FAILED, Study, StudyOptions, hash_of, run_study, runner_of
 from fem.study.fragility import POINT_COLUMNS, EnsembleResult, count_point, fragility_of
 from fem.study.maps import ensemble_figures
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set, write_motions
@@ -47,13 +38,12 @@ SHOWN: Columns = {"outcome": str} | columns_of(Place.KEY) | {key: RUN_COLUMNS[ke
 def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:
     """Compute an ensemble into a folder; raises as `run_study`, and CaseError for bad input."""
     with runner_of(**options) as reader:
-        motions = read_motion_set(ensemble.base, sets_among(ensemble.random), reader)
+        motions = read_motion_set(ensemble.base, ensemble.motions, reader)
         options["workers_of"] = reader.workers_of
         copied = [motion.case for motion in motions if ensemble.replicates <= MOST_COPIED]
         begun = begun_result(ensemble, motions)
-        rows = table_bytes(
-            ensemble.count * ensemble.draws, OF_A_DRAW + len(ensemble.random) + len(ensemble.unknown)
-        )
+        numbers = OF_A_DRAW + len(ensemble.random) + len(ensemble.unknown)
+        rows = table_bytes(ensemble.count * ensemble.draws, numbers)
         files = sum(path.stat().st_size for case in copied for path in case.data_files.values())
         points = table_bytes(ensemble.count, OF_A_POINT)
         study = Study(
@@ -81,7 +71,7 @@ def _compute(
     codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
     slips, limit = np.full(codes.shape, np.nan), ensemble.limit_slip_m
     #: keys that are drawn, and those that follow the motion of a draw
-    following = [key for axis in sets_among(ensemble.random) for key in axis.following]
+    following = [*ensemble.motions.following] if ensemble.motions else []
     drawn = [*(quantity.key for quantity in ensemble.random), *following]
     keys = [*(f"{one.key}{' factor' * one.relative}" for one in ensemble.random), *following]
     columns: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
@@ -92,12 +82,9 @@ def _compute(
         return *draw[:2], replicate, *map(draw.drawn.get, drawn), *map(draw.unknown.get, ensemble.unknown)
 
     def shown(row: Row) -> Row:
-        figures = {key: row[key] for key in (TURNED, SLIPPED)}
-        known = {
-            key: None if value is None or not np.isfinite(value) else value for key, value in figures.items()
-        }
+        known = {name: row[name] if np.isfinite(row[name] or 0.0) else None for name in (TURNED, SLIPPED)}
         outcome = COUNTED_AS[ending_of(row["status"], row["outcome"])]
-        return {"outcome": outcome} | known | {key: row[key] for key in FELL_FIRST}
+        return {"outcome": outcome} | known | {name: row[name] for name in FELL_FIRST}
 
     def note(line: str) -> None:
         row = row_of(columns, line)
@@ -123,13 +110,12 @@ def _compute(
     regions = [point["region"] for point in points]
     result = replace(
         begun,
-        status=INTERRUPTED,
         points=tuple(points),
         regions={name: regions.count(name) for name in ("below", "undecided", "above")},
         failed=sum(point["failed"] for point in points),
     )
     if not complete.all():
-        return replace(result, missing=f"{len(points)} of {ensemble.count} points have all their draws")
+        return result.interrupted(f"{len(points)} of {ensemble.count} points have all their draws")
     fragility = fragility_of(ensemble, codes, points)
     for name, svg in ensemble_figures(ensemble, points, fragility).items():
         results.write(f"figures/{name}.svg", svg)
@@ -138,7 +124,7 @@ def _compute(
     if motions:
         blocks = codes.reshape(ensemble.count, ensemble.replicates, -1)
         outcomes = [counts_of(block) for block in np.moveaxis(blocks, 1, 0)]
-        result = replace(result, **write_motions(results, motions, outcomes, COUNTED, runner))
+        result = replace(result, **write_motions(results, motions, outcomes, runner))
     answer = ensemble_answer(result)
     return replace(result, answer=answer.sentence if answer else None)
 

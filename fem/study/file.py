@@ -2,10 +2,10 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import islice, product
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -33,15 +33,12 @@ from fem.study.axes import (
 )
 from fem.study.derived import FREE, read_derived, value_in
 from fem.study.design import (
-    Design,
     Ensemble,
-    Item,
     MapChoice,
     Perturbation,
     Sweep,
     Threshold,
     Unknown,
-    sets_among,
 )
 from fem.study.draws import RandomQuantity, Sampling, read_random
 
@@ -155,9 +152,8 @@ def _each_key(
     return tuple(found)
 
 
-def _require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
+def _require_verticals(motions: Axis | None, varied: Iterable[str], base: Case) -> None:
     """Refuse a motion alone in a set where a key of its vertical motion varies."""
-    motions = set_axis(axes)
     key = next((key for key in varied if key.startswith("vertical.")), None)
     if motions is None or key is None or (not motions.following and base.has_vertical):
         return
@@ -182,7 +178,6 @@ def require_once(changes: Mapping[str, Any], varied: Sequence[str], base: Case) 
 
 MOST_AXES, MOST_POINT_AXES, MOST_RANDOM = 4, 3, 8
 MOST_RUNS = 1_000_000  #: of an ensemble
-TRIED = 64  #: cases that are built to find bad values before anything is computed
 REPLICATES = 16
 SWEEP_TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
 ENSEMBLE_TABLES = ("set", "axes", "random", "derived")
@@ -234,8 +229,9 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
     axes = _each_key("axes", flat("axes", tables.get("axes", {})), MOST_AXES, example, _axis)
     keys, known = [axis.key for axis in axes], {axis.key: axis for axis in axes}
-    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes), keys)
-    _require_verticals(axes, keys, base)
+    motions = set_axis(axes)
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(motions), keys)
+    _require_verticals(motions, keys, base)
 
     def check_reference(name: str) -> None:
         if not name.startswith(FREE):
@@ -291,7 +287,7 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
         maps=maps,
     )
     idle = list(keys)  # without an effect in any of the cases
-    for case in _tried(sweep, sweep.corners(listed=True), "[axes] make this cell", str):
+    for case in sweep.tried(sweep.corners(listed=True), "[axes] make this cell", str):
         idle = [key for key in idle if _is_idle(case, key)]
     if idle:
         raise CaseError(
@@ -299,17 +295,6 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
             "choose the option it belongs to under [set], or leave the axis out"
         )
     return sweep
-
-
-def _tried(design: Design, items: Iterable[Item], tables: str, words: Callable[[Any], str]) -> Iterator[Case]:
-    """The cases of the first of some runs; CaseError for one that cannot be used, with what makes it."""
-    for item in islice(items, TRIED):
-        try:
-            yield design.make.case(item)
-        except CaseError as error:
-            values = [pair for pair in (*item.point.items(), *item.drawn.items()) if pair[0] in design.varied]
-            where = ", ".join(f"{key} = {one if isinstance(one, str) else words(one)}" for key, one in values)
-            raise CaseError(f"{error}\n{tables}: {where}") from None
 
 
 def _is_idle(case: Case, key: str) -> bool:
@@ -346,23 +331,23 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
 
     example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
     random = _each_key("random", tables.get("random", {}), MOST_RANDOM, example, drawn_key)
-    sets = sets_among(random)
-    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(sets), keys)
+    motions = set_axis([one.choices for one in random if one.choices is not None])
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(motions), keys)
     if base.solver.model == "full":
         why = "an ensemble of the full model would take weeks"
         raise CaseError(f'[set] "solver.model" must be "rigid" or "reduced": {why}')
     varied = [*keys, *(quantity.key for quantity in random)]
-    _require_verticals(sets, varied, base)
+    _require_verticals(motions, varied, base)
     drawn = [quantity.key for quantity in random if not quantity.relative]
     require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
     draws, replicates = heading.draws, 1 if heading.sampling == "independent" else heading.replicates
-    replicates = len(sets[0].values) if sets else replicates
+    replicates = len(motions.values) if motions else replicates
     own = heading.model_dump(exclude={"case", "replicates"})
     own |= {"name": origin.name, "text": origin.text, "base": base, "axes": axes, "random": random}
     follow = read_derived(derived, varied, check_key, check_reference)
     ensemble = Ensemble(derived=follow, replicates=replicates, **own)
     if draws % replicates:
-        parts = "motions equally likely" if sets else "replicates of one size"
+        parts = "motions equally likely" if motions else "replicates of one size"
         fit = replicates * max(draws // replicates, 1)
         raise CaseError(f"draws = {draws} do not make {replicates} {parts}; take {fit} draws")
     size = draws // replicates
@@ -382,7 +367,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
             f"[axes] make {ensemble.count} points x {draws} draws = {runs} runs; at most {MOST_RUNS}"
         )
     items = ensemble.corners(drawn=[*product(*(quantity.ends for quantity in random))])
-    list(_tried(ensemble, items, "[axes] and [random] make this case", lambda value: f"{value:g}"))
+    list(ensemble.tried(items, "[axes] and [random] make this case", lambda value: f"{value:g}"))
     return ensemble
 
 

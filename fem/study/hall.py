@@ -9,7 +9,7 @@ import difflib
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
@@ -50,8 +50,6 @@ from fem.study.design import Design, Item
 from fem.study.driver import (
     COMPLETED,
     FAILED,
-    INTERRUPTED,
-    LoggedRuns,
     Study,
     StudyOptions,
     StudyResult,
@@ -329,7 +327,7 @@ class Hall(Design):
 
     file: HallFile
     one_side: bool = False  #: look only at the side that is given as the width
-    motions: tuple[FloorMotionPair, ...] = ()  #: in place of that of the base case
+    pairs: tuple[FloorMotionPair, ...] = ()  #: in place of that of the base case
     named: tuple[str, ...] = ()  #: these, as they were named on the command line
     rows: tuple[HallRow, ...] = ()  #: each with its container, or why it is refused
     containers: Mapping[str, HallRow] = field(default_factory=dict)  #: by hash, the first row of each
@@ -338,7 +336,7 @@ class Hall(Design):
     @cached_property
     def keys(self) -> list[Mapping[str, Any]]:
         """Those that set each motion; of the motion of the base case none."""
-        return [pair.keys for pair in self.motions] or [{}]
+        return [pair.keys for pair in self.pairs] or [{}]
 
     @cached_property
     def items(self) -> list[Item]:
@@ -461,8 +459,8 @@ def run_hall(
                 axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in files])
             except AxisError as error:
                 raise CaseError(f"--motion {error}") from None
-            pairs = read_motion_set(own, [axis], runner)
-        asked: dict[str, Any] = {"motions": pairs, "named": motions, "one_side": one_side}
+            pairs = read_motion_set(own, axis, runner)
+        asked: dict[str, Any] = {"pairs": pairs, "named": motions, "one_side": one_side}
         hall = Hall(
             name=file.name, file=file, base=own, allow_outside=origin.allow_outside, **asked
         ).checked()
@@ -508,9 +506,8 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     runs.run(runner, [items])
     begun = replace(begun, runs=len(runs.lines))
     if runs.missing(items):
-        words = f"{begun.runs} of {len(items)} runs are computed"
-        return replace(begun, status=INTERRUPTED, missing=words)
-    found = [_governing(hall, [*own], runs) for _, own in groupby(items, key=itemgetter(0))]
+        return begun.interrupted(f"{begun.runs} of {len(items)} runs are computed")
+    found = [_governing(hall, [*own], runs.row) for _, own in groupby(items, key=itemgetter(0))]
     weakest = sorted(found, key=lambda pair: weakness(pair[1]))
     able = [item for item, row in weakest if row["outcome"] and hall.model_of(item) != "full"]
     count = {"none": 0, "all": len(able)}.get(begun.checks, max(math.ceil(SHARE * len(found)), LEAST))
@@ -521,7 +518,7 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     checks.run(runner, iter(to_check, []))
     begun = replace(begun, checked=len(checks.lines))
     if count := len(to_check()):
-        return replace(begun, status=INTERRUPTED, missing=f"{count} of the weakest are still to be repeated")
+        return begun.interrupted(f"{count} of the weakest are still to be repeated")
     results.check()
     results.write(RUNS, runs.table())
     results.write(CHECKS, checks.table())
@@ -577,12 +574,12 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     return replace(result, answer=text_of("hall_answer.txt.j2", result=result, **known))
 
 
-def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tuple[Item, Row]:
+def _governing(hall: Hall, items: Sequence[Item], row_of: Callable[[Item], Row]) -> tuple[Item, Row]:
     """The run in which a container does worst, the first of equals; its results, its static rule, those of all motions.
 
     Of two sides the worse.
     """
-    rows, motions, sides = [*map(runs.row, items)], len(hall.keys), list[tuple[Item, Row]]()
+    rows, motions, sides = [*map(row_of, items)], len(hall.keys), list[tuple[Item, Row]]()
     for first in range(0, len(items), motions):
         case = hall.make.case(items[first])
         mesh = build_container(case)
@@ -610,7 +607,7 @@ def _governing(hall: Hall, items: Sequence[Item], runs: LoggedRuns[Item]) -> tup
         sides.append((item, row | {name: getattr(static.ruling, name) for name in STATIC}))
     item, row = min(sides, key=lambda side: weakness(side[1]))
     rows = [min(rows[motion::motions], key=weakness) for motion in range(motions)]
-    if names := [pair.name for pair in hall.motions]:
+    if names := [pair.name for pair in hall.pairs]:
         counts, slips = Counter(map(_ending_in, rows)), [run[SLIPPED] or 0.0 for run in rows]
         slid = slips.index(max(slips))
         under = (

@@ -4,7 +4,7 @@ A set is the values of `motion.file` in a study: recorded motions, alone or with
 """
 
 import hashlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from operator import itemgetter
@@ -22,10 +22,11 @@ from fem.records.intensity import Intensity, intensity
 from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.figures import types_of
 from fem.results.folder import ResultFolder
+from fem.results.outcome import COUNTED
 from fem.run.described import part_covered
 from fem.runtime.arrays import FloatArray
 from fem.runtime.user_files import real_path
-from fem.study.axes import MOTION_FILE, VERTICAL_FILE, Axis, set_axis, with_following
+from fem.study.axes import MOTION_FILE, VERTICAL_FILE, Axis, with_following
 from fem.study.design import CaseMaker
 from fem.study.runner import Runner
 from fem.study.table import Columns, table_of_rows, table_text
@@ -62,14 +63,13 @@ class FloorMotionPair:
 
 
 def read_motion_set(
-    base: Case, axes: Iterable[Axis], runner: Runner | None = None
+    base: Case, axis: Axis | None, runner: Runner | None = None
 ) -> tuple[FloorMotionPair, ...]:
-    """Read the motions of the set that one of some axes may hold, as the base case takes them; none without a set.
+    """Read the motions of a set, as the base case takes them; none without a set.
 
     The workers of a runner read a large set. CaseError for a file that cannot be used, components that were not sampled
     together, two motions of one file, two files that hold the same motion.
     """
-    axis = set_axis(axes)
     keys = [with_following([axis], {axis.key: name}) for name in axis.values] if axis else []
     pairs = _each(runner, "motions read", keys, partial(_read, CaseMaker(base)))
     contents, owners = dict[str, str](), dict[Path, str]()
@@ -111,19 +111,18 @@ def write_motions(
     place: ResultFolder,
     motions: Sequence[FloorMotionPair],
     outcomes: Sequence[Mapping[str, int]],
-    counted: Iterable[str],
     runner: Runner | None = None,
 ) -> dict[str, Any]:
     """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns what the result says of them.
 
-    `outcomes`: of each motion, by the names of what is counted.
+    `outcomes`: of each motion, as `COUNTED`.
     """
     measures = [{**motion.numbers(), **outcome} for motion, outcome in zip(motions, outcomes, strict=True)]
 
     def upward(numbers: Mapping[str, Any]) -> dict[str, Any]:
         return {f"vertical_{name}": value for name, value in numbers.items()}
 
-    columns: Columns = MEASURED | dict.fromkeys(counted, int)
+    columns: Columns = MEASURED | dict.fromkeys(COUNTED, int)
     columns |= upward(MEASURED) if any(measure["vertical"] for measure in measures) else {}
     rows = ({**measure, **upward(measure["vertical"] or {})} for measure in measures)
     place.write("motions.csv", table_of_rows(columns, rows))

@@ -4,7 +4,6 @@ Cases that have the same container share its mesh and modes. A case that cannot 
 status "failed" and the reason; it never has an outcome.
 """
 
-import math
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
@@ -35,17 +34,7 @@ from fem.runtime.signals import stop_requested
 from fem.runtime.threads import cores
 from fem.study.containers import ContainerCache, container_key
 from fem.study.table import Columns
-from fem.study.workers import (
-    IN_THREADS,
-    STDIN,
-    FoundT,
-    ItemT,
-    LocalWorkers,
-    WorkersOf,
-    hand_out,
-    never,
-    unguarded_script,
-)
+from fem.study.workers import IN_THREADS, FoundT, ItemT, LocalWorkers, WorkersOf, hand_out, never, unguarded
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
@@ -92,22 +81,45 @@ class Runner:
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
-        with closing(_Told(what, sum(map(len, by_model.values())), self.reporter)) as told:
+        total, done, failed, began = sum(map(len, by_model.values())), 0, 0, time.perf_counter()
+        first: tuple[int, float] | None = None  # how many were done when, after whatever was compiled [s]
+        foretold = False
+
+        def told() -> str:
+            """How much is done, how fast, and the time left."""
+            elapsed, lost = time.perf_counter() - began, f", {failed} failed" if failed else ""
+            rate = done / elapsed if elapsed > 0.0 else 0.0
+            if done == total:
+                return f"{total} {what} in {clock_time(elapsed)}{lost}"
+            left = f"{clock_time((total - done) / rate)} left" if rate > 0.0 else "time left unknown"
+            return f"{done} of {total} {what}, {rate:.3g} per s, {left}{lost}"
+
+        self.reporter.start(0.0)
+        try:
             for model, group in sorted(by_model.items(), key=lambda pair: [*CASES_AT_A_TIME].index(pair[0])):
-                pools, size = self.workers_of(model, len(group)), 1
-                workers = sum(pool.count for pool in pools)
-                if work is None and model != "full":
-                    usual = CASES_AT_A_TIME[model]
-                    size = max(
-                        usual, min(usual * workers // MANY_WORKERS, len(group) // (LEAST_CHUNKS * workers))
-                    )
-                done = partial(work or run_chunk, make)
-                finish = model != "full" and work is None  # one of these may take an hour
-                for chunk, rows in hand_out(
-                    group, done, pools, at_a_time=size, stop=self.stop, finish=finish
-                ):
+                pools, size, finish = self.workers_of(model, len(group)), 1, False
+                if model != "full" and work is None:  # one of these may take an hour
+                    usual, workers, finish = CASES_AT_A_TIME[model], sum(pool.count for pool in pools), True
+                    size = min(usual * workers // MANY_WORKERS, len(group) // (LEAST_CHUNKS * workers))
+                    size = max(usual, size)
+                own: dict[str, Any] = {"at_a_time": size, "stop": self.stop, "finish": finish}
+                for chunk, rows in hand_out(group, partial(work or run_chunk, make), pools, **own):
                     yield chunk[: len(rows)], rows
-                    told.more(len(rows), sum(row["status"] == "failed" for row in rows))
+                    done, failed = done + len(rows), failed + sum(row["status"] == "failed" for row in rows)
+                    if done < total:
+                        self.reporter.tell(told)
+                        now = time.perf_counter()
+                        first = first or (done, now)
+                        if (
+                            not foretold and now > first[1] + MEASURED_S
+                        ):  # said once, at the rate of the first seconds
+                            foretold, rest = True, total - done
+                            seconds = rest * (now - first[1]) / (done - first[0])
+                            say_expected(self.reporter, f"{rest} more {what}", seconds)
+        finally:
+            self.reporter.finish()
+            if total and done == total and time.perf_counter() - began > TOLD_S:
+                self.reporter.message(told())  # the last line does not stand at a time left
 
     def each(
         self,
@@ -159,50 +171,6 @@ class NamedStages:
         """The runs that were announced are there."""
         if self.since is not None:
             self.spent, self.since = self.spent + time.perf_counter() - self.since, None
-
-
-@dataclass
-class _Told:
-    """The line of progress of some work: from its begin, `more` as it is done, `close`."""
-
-    what: str
-    total: int
-    reporter: Reporter
-    done: int = 0
-    failed: int = 0
-    began: float = field(default_factory=time.perf_counter)
-    first: tuple[int, float] = 0, math.inf  #: how many were done when, after whatever was compiled [s]
-    foretold: bool = False
-
-    def __post_init__(self) -> None:
-        self.reporter.start(0.0)
-
-    def more(self, done: int, failed: int = 0) -> None:
-        """So many items more are done."""
-        self.done, self.failed = self.done + done, self.failed + failed
-        if self.done < self.total:
-            self.reporter.tell(self.line)
-            now = time.perf_counter()
-            before, since = self.first = self.first if self.first[0] else (self.done, now)
-            if not self.foretold and now > since + MEASURED_S:  # said once, at the rate of the first seconds
-                self.foretold = True
-                left = (self.total - self.done) * (now - since) / (self.done - before)
-                say_expected(self.reporter, f"{self.total - self.done} more {self.what}", left)
-
-    def close(self) -> None:
-        """The work has ended."""
-        self.reporter.finish()
-        if self.total and self.done == self.total and time.perf_counter() - self.began > TOLD_S:
-            self.reporter.message(self.line())  # the last line does not stand at a time left
-
-    def line(self) -> str:
-        """How much is done, how fast, and the time left."""
-        elapsed, lost = time.perf_counter() - self.began, f", {self.failed} failed" if self.failed else ""
-        rate = self.done / elapsed if elapsed > 0.0 else 0.0
-        if self.done == self.total:
-            return f"{self.total} {self.what} in {clock_time(elapsed)}{lost}"
-        left = f"{clock_time((self.total - self.done) / rate)} left" if rate > 0.0 else "time left unknown"
-        return f"{self.done} of {self.total} {self.what}, {rate:.3g} per s, {left}{lost}"
 
 
 def _work_on(work: Callable[[ItemT], FoundT], of: Callable[[Any], ItemT], items: Sequence[Any]) -> list[Row]:
@@ -389,12 +357,10 @@ def compute_many(
             build_motions(case)
         except ValueError as error:
             runs[number] = noted(error, number)
-    script = unguarded_script() if min(jobs, len(all_cases)) > 1 else None
-    if script is not None:
-        no_file = "is no file that a process can load"
-        reason = no_file if script == STDIN else 'lacks `if __name__ == "__main__":`'
+    alone = unguarded() if min(jobs, len(all_cases)) > 1 else None
+    if alone is not None:
         warnings.warn(
-            f"{script} {reason}, so its cases are computed by threads of this process only; call compute_many behind "
+            f"{alone}, so its cases are computed by threads of this process only; call compute_many behind "
             "that line, in a script that is a file, to use several processes",
             stacklevel=2,
         )
@@ -404,7 +370,7 @@ def compute_many(
     items = [(number, all_cases[number]) for number in order if number not in runs]
     work = partial(_compute, WantedChecks(**wanted))
     reporter = ScreenReporter(quiet=not (watched() if progress is None else progress))
-    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
+    with LocalWorkers(jobs, WORTH_PROCESSES if alone is None else IN_THREADS) as workers_of:
         runner = Runner(workers_of=workers_of, reporter=reporter, stop=stop_requested)
         with closing(runner.each("runs", items, work, lambda item: item[1].solver.model)) as found:
             for number, run in found:

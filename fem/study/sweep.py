@@ -25,7 +25,7 @@ from fem.runtime.threads import cores
 from fem.runtime.user_files import read_own
 from fem.study.answers import answers_csv, sweep_answer
 from fem.study.design import Item, Sweep
-from fem.study.driver import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.study.driver import COMPLETED, FAILED, Study, StudyOptions, hash_of, run_study
 from fem.study.maps import draw_maps
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import NamedStages, Runner
@@ -55,7 +55,7 @@ def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> Sw
 
     jobs = options.get("jobs") or cores()
     check_size(sweep, jobs, options.get("force", False))
-    motions = read_motion_set(sweep.base, sweep.axes)
+    motions = read_motion_set(sweep.base, sweep.motions)
     begun = asked_of(sweep, motions, jobs)
     study = Study(
         kind=SWEEP,
@@ -122,13 +122,13 @@ def _again(
     if finished.band_hash != begun.band_hash or not (place.path / TABLE).is_file():
         return None
     if finished.map_axes != begun.map_axes:
-        finished = replace(finished, map_axes=begun.map_axes, maps=_draw(place, sweep))
+        finished = replace(
+            finished,
+            map_axes=begun.map_axes,
+            maps=tuple(draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps)),
+        )
         place.write_result(finished.to_json())
     return finished
-
-
-def _draw(place: ResultFolder, sweep: Sweep) -> tuple[str, ...]:
-    return tuple(draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps))
 
 
 def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runner) -> SweepResult:
@@ -176,7 +176,7 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
         words = f"{result.rows} of {sweep.count} cells are computed"
         if result.rows == sweep.count:
             words = "all cells are computed, their copies or the changes between them are not"
-        return replace(result, status=INTERRUPTED, missing=words, wall_s=time.perf_counter() - began)
+        return replace(result.interrupted(words), wall_s=time.perf_counter() - began)
     place.check()
     result = replace(result, status=FAILED if {*outcomes} == {FAILED} else COMPLETED)
     bands: Iterator[tuple[Any, ...]] = iter([(None,) * (len(with_band) - len(columns))] * sweep.count)
@@ -189,12 +189,9 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     if changes is not None and wanted is not None:
         place.write(THRESHOLDS, table_of_rows(change_columns(sweep.axes, wanted.axis), changes))
         result = replace(result, changes=len(changes))
-    answer = sweep_answer(open_sweep(place.path), place.path)
-    if answer:
+    open_table = open_sweep(place.path)
+    if answer := sweep_answer(open_table, place.path):
         place.write(ANSWERS, answers_csv(answer))
-    return replace(
-        result,
-        answer=answer.sentence if answer else None,
-        maps=_draw(place, sweep),
-        wall_s=time.perf_counter() - began,
-    )
+        result = replace(result, answer=answer.sentence)
+    maps = tuple(draw_maps(open_table, place.path / "maps", sweep.maps))
+    return replace(result, maps=maps, wall_s=time.perf_counter() - began)

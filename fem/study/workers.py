@@ -201,16 +201,18 @@ def _signals_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def unguarded_script() -> str | None:
-    """The main script, if it never asks for its `__name__`: a process would load it, and start it again.
+def unguarded() -> str | None:
+    """The main script, if it never asks for its `__name__`: a process would load it, and start it again; and why so.
 
-    None where a process may be started; also for a notebook, whose processes load nothing. A script that Python reads
-    from its standard input, which no process can load, is "<stdin>".
+    None where a process may be started; also for a notebook, whose processes load nothing. No process can load a script
+    that Python reads from its standard input.
     """
     path = getattr(sys.modules["__main__"], "__file__", None) or ""
+    if path == STDIN:
+        return f"{STDIN} is no file that a process can load"
     source = "".join(linecache.getlines(path)) if path else ""
-    guarded = not path or (path != STDIN and (not source or "__name__" in source))
-    return None if guarded else os.path.basename(path)
+    guarded = not source or "__name__" in source
+    return None if guarded else f'{os.path.basename(path)} lacks `if __name__ == "__main__":`'
 
 
 def _end_with_parent(parent: int, over: Semaphore, begun: SimpleQueue[int]) -> None:

@@ -1,13 +1,23 @@
-"""A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
+"""Many cases on all cores, in processes, in memory, on a cluster: each is the run alone, whatever runs beside it."""
 
+import os
 import signal
+import socket
+import subprocess
 import sys
+import time
+from pathlib import Path
+from textwrap import dedent
 
 import pytest
 from case_rows import run_cases
+from small_sweep import SMALL, rows_without_wall
 from worker_tasks import end_the_process, hear_the_group_end, held_back, who_works
 
-from fem.case.case import load_case
+import fem
+import fem.study.runner as many
+from fem.__main__ import main
+from fem.case.case import CaseError, load_case
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.figures import SCALARS
@@ -142,3 +152,157 @@ def test_cases_that_differ_in_material_damping_share_their_container():
     assert len({container_key(case) for case in cases}) == 1
     turned = [row["rotation_ratio"] for row in run_cases(cases, jobs=1)]
     assert len(set(turned)) == len(ratios)
+
+
+POOLS = dedent(
+    """
+    import os, sys, threading
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    from fem.study import workers
+
+    def told():
+        return getattr(workers, "told", "nothing"), os.getpid() == int(os.environ["PARENT"])
+
+    if __name__ == "__main__":
+        os.environ["PARENT"] = str(os.getpid())
+        workers.told = "before the start"
+        if "beside" in sys.argv:
+            threading.Thread(target=threading.Event().wait, daemon=True).start()
+        with workers.LocalWorkers(2) as workers_of:
+            pools = workers_of("rigid", int(sys.argv[1]))
+            print([(*pool.executor.submit(told).result(), pool.count) for pool in pools])
+    """
+)
+BESIDE = ("before the start", True)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere no process is forked")
+@pytest.mark.parametrize(
+    ("count", "beside", "workers"),
+    [
+        ("64", [], [("before the start", False, 1), (*BESIDE, 1)]),
+        ("64", ["beside"], [(*BESIDE, 2)]),
+        pytest.param("2000", ["beside"], [("nothing", False, 1), (*BESIDE, 1)], marks=pytest.mark.slow),
+    ],
+)
+def test_a_process_without_other_threads_is_forked_for_few_cases(tmp_path, count, beside, workers):
+    """A new process would take a second or two, and know nothing of what this one has set."""
+    script = tmp_path / "script.py"
+    script.write_text(POOLS, encoding="utf-8")
+    command = [sys.executable, str(script), count, *beside]
+    ended = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    assert ended.stdout.strip() == str(workers)
+
+
+ROOT = Path(__file__).parents[3]
+BOX = fem.load_case("seed_box", ["solver.model=rigid", "solver.duration_s=0.5", "output.fields_s=0"])
+FRICTIONS = (0.2, 0.3, 0.4)
+TIMES = {"wall_s", "cpu_s", "compile_s", "numerics"}
+
+SCRIPT = """
+import fem
+
+print("begun")
+case = fem.load_case("seed_box", ["solver.model=rigid", "solver.duration_s=0.5", "output.fields_s=0"])
+
+
+def compute():
+    cases = [case.replace({"contact.mu_static": mu}) for mu in (0.2, 0.3)]
+    print([run.verdict.outcome for run in fem.compute_many(cases, jobs=2, band=False)])
+
+"""
+
+
+def figures(run):
+    return {key: value for key, value in run.result.items() if key not in TIMES}
+
+
+def test_each_run_is_the_run_alone_in_the_order_of_the_cases():
+    cases = [BOX.replace({"contact.mu_static": mu}) for mu in FRICTIONS]
+    cases.insert(1, BOX.replace({"container.width_m": 0.9}))  # of another container
+    runs = fem.compute_many(cases, band=False)
+    assert [run.case.contact.mu_static for run in runs] == [0.2, 0.4, 0.3, 0.4]
+    for case, run in zip(cases, runs, strict=True):
+        alone = fem.compute(case, band=False)
+        assert figures(run) == figures(alone)
+        assert (run.history.samples == alone.history.samples).all()
+
+
+def test_a_case_that_cannot_be_computed_is_named():
+    with pytest.raises(CaseError) as refused:
+        fem.compute_many([BOX, BOX.replace({"solver.step_s": 0.5})], band=False)
+    assert refused.value.__notes__ == ["case 2 of 2 of compute_many"]
+    with pytest.raises(ValueError, match="jobs must be at least 1, got 0"):
+        fem.compute_many([BOX], jobs=0)
+    assert fem.compute_many([]) == []
+
+
+#: its walls weigh more than the box; no mesh can be made of it
+TOO_LIGHT = BOX.replace({"container.wall_m": 0.05, "container.mass_kg": 900.0})
+
+
+def test_all_cases_are_looked_at_before_the_first_is_computed(monkeypatch):
+    monkeypatch.setattr(
+        many, "compute_on", lambda *_: pytest.fail("computed before the last case was looked at")
+    )
+    with pytest.raises(ValueError, match="walls and posts of one box weigh") as refused:
+        fem.compute_many([BOX, TOO_LIGHT], 1, band=False)
+    assert refused.value.__notes__ == ["case 2 of 2 of compute_many"]
+
+
+def test_errors_may_be_returned_in_place_of_runs():
+    late = BOX.replace({"solver.step_s": 0.5})  # refused by the model alone
+    found = fem.compute_many([TOO_LIGHT, BOX, late], 1, band=False, errors="return")
+    assert [isinstance(one, ValueError) for one in found] == [True, False, True]
+    assert figures(found[1]) == figures(fem.compute(BOX, band=False))
+    assert found[2].__notes__ == ["case 3 of 3 of compute_many"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("call", "warned"), [("compute()", True), ('if __name__ == "__main__":\n    compute()', False)]
+)
+def test_a_script_without_a_guard_is_told_so_and_does_not_start_itself_again(tmp_path, call, warned):
+    (tmp_path / "study.py").write_text(SCRIPT + call + "\n", encoding="utf-8")
+    command, environment = [sys.executable, "study.py"], os.environ | {"PYTHONPATH": str(ROOT)}
+    found = subprocess.run(
+        command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=300
+    )
+    assert found.stdout == "begun\n['slide', 'rest']\n" and "Traceback" not in found.stderr
+    assert found.stderr.count('UserWarning: study.py lacks `if __name__ == "__main__":`') == warned
+
+
+@pytest.fixture(scope="module")
+def address():
+    distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
+    options = {"n_workers": 1, "threads_per_worker": 2, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(protocol="tcp", host="127.0.0.1", **options) as local:
+        yield local.scheduler_address
+
+
+@pytest.mark.slow
+def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address, undrawn):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "small.toml").write_text(SMALL, encoding="utf-8")
+    assert main(["sweep", "small.toml", "-q", "--scheduler", address]) == 0
+    assert main(["sweep", "small.toml", "-q", "--out", "here"]) == 0
+    assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "here")
+    capsys.readouterr()
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_does_not_answer_is_reported_within_seconds(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
+    monkeypatch.chdir(tmp_path)
+    with socket.socket() as silent:  # listens, and says nothing
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        began = time.monotonic()
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        assert main(["sweep", "outcome_map", "--scheduler", address]) == 2
+        assert time.monotonic() - began < 30.0
+    message = capsys.readouterr().err
+    assert f"--scheduler {address}: no answer within 5 s" in message
+    assert "leave --scheduler out" in message
+    assert main(["sweep", "outcome_map", "--scheduler", "nonsense"]) == 2
+    assert not (tmp_path / "outputs").exists()

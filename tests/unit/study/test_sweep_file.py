@@ -1,10 +1,17 @@
-"""What a sweep file may hold; what it may not is refused with the key, the reason and a way out."""
+"""What the file of a study may hold: axes, the case beside it, derived keys that are arithmetic and no code."""
+
+import math
+import warnings
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fem.case.case import case_hash
-from fem.case.files import SWEEPS
-from fem.study.file import load_sweep
+from fem.case.files import CASES, SWEEPS
+from fem.case.validation import CaseError
+from fem.study.derived import ExpressionError, parse_expression
+from fem.study.file import load_ensemble, load_sweep
 
 HEAD = 'case = "seed_stack_plateau"\n[set]\n"solver.model" = "rigid"\n'
 FREQUENCY = '"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 3 }\n'
@@ -61,3 +68,93 @@ def test_shipped_sweeps_can_be_read(name):
     assert sweep.title
     assert sweep.count > 100
     assert sweep.case(0) != sweep.case(sweep.count - 1)
+
+
+SWEEP = '[axes]\n"contact.mu_static" = [0.3, 0.4]\n'
+ENSEMBLE = (
+    'draws = 80\n[set]\n"solver.model" = "rigid"\n[axes]\n"contact.mu_static" = [0.3, 0.4]\n'
+    '[random]\n"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }\n'
+)
+READERS = pytest.mark.parametrize("read, text", [(load_sweep, SWEEP), (load_ensemble, ENSEMBLE)])
+
+
+def written(folder, text, case):
+    folder.mkdir(exist_ok=True)
+    path = folder / "many.toml"
+    path.write_text(f'case = "{case}"\n{text}', encoding="utf-8")
+    return path
+
+
+@READERS
+def test_a_file_beside_it_wins_over_a_shipped_case(tmp_path, read, text):
+    (tmp_path / "seed_box").write_text(
+        CASES.text("seed_box").replace("boxes = 1 ", "boxes = 2 "), encoding="utf-8"
+    )
+    assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 2
+    (tmp_path / "seed_box").unlink()
+    assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 1
+
+
+@READERS
+@pytest.mark.parametrize("case", ["../outside.toml", "/etc/hostname"])
+def test_a_path_out_of_the_folder_is_refused(tmp_path, read, text, case):
+    (tmp_path / "outside.toml").write_text("", encoding="utf-8")
+    with pytest.raises(CaseError, match="case"):
+        read(written(tmp_path / "inner", text, case))
+
+
+@READERS
+def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
+    path = written(tmp_path, text, "seed_box")
+    changed = path.read_text(encoding="utf-8")
+    changed = (
+        changed.replace("[axes]", '"contact.mu_static" = 0.5\n[axes]')
+        if "[set]" in changed
+        else (changed + '[set]\n"contact.mu_static" = 0.5\n')
+    )
+    path.write_text(changed, encoding="utf-8")
+    with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
+        read(path)
+
+
+VALUES = {"contact.mu_static": 0.4, "gravity_m_s2": 9.81, "free.lambda": 3.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.5 * contact.mu_static", 0.2),
+        ("1 + 2 * 3 - 4 / 2", 5.0),
+        ("-2^2", -4.0),
+        ("2^3^2", 512.0),
+        ("2 ** -1", 0.5),
+        ("10 - 4 - 3", 3.0),
+        ("(1 + 2) * 3", 9.0),
+        ("max(1e-3, min(gravity_m_s2, 2.))", 2.0),
+        ("sqrt(2) * sin(pi / 4)", 1.0),
+        ("\n2 *\tfree.lambda ^ 2", 18.0),  # a key may be one of Python's words
+    ],
+)
+def test_values(text, value):
+    assert parse_expression(text).value(VALUES) == pytest.approx(value, rel=1e-15)
+
+
+@given(st.text(alphabet="0123456789.eE+-*/^() ,abcdefg_pisqrtmuxn", max_size=60))
+def test_any_text_is_an_expression_or_refused(text):
+    try:
+        parsed = parse_expression(text)
+    except ExpressionError:
+        return
+    values = dict.fromkeys(parsed.keys, 0.7)
+    try:
+        assert math.isfinite(parsed.value(values))
+    except ExpressionError:
+        return
+
+
+@pytest.mark.parametrize("text", ["1if", "0x1in", "1jor", "1or 2", "(1)(2)", "'a'(1)"])
+def test_a_doubt_of_python_is_told_in_words_and_not_printed(text):
+    with warnings.catch_warnings(record=True) as caught, pytest.raises(ExpressionError):
+        warnings.simplefilter("always")
+        parse_expression(text)
+    assert not caught

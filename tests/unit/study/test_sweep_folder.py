@@ -1,24 +1,13 @@
 """A sweep from its file to its table: the same whatever the jobs, cut off or not."""
 
-import os
-import random
-import subprocess
-import sys
-import time
-from pathlib import Path
-
 import numpy as np
 import pytest
 from small_sweep import SMALL, rows_without_wall
 
-from fem.__main__ import main
 from fem.case.validation import CaseError
 from fem.study.file import load_sweep
 from fem.study.sweep import check_size, run_sweep
 from fem.study.sweep_table import open_sweep
-
-ROOT = Path(__file__).parents[3]
-
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 
@@ -75,41 +64,6 @@ def test_another_band_keeps_the_rows(gallery, tmp_path):
     assert [row[:last] for row in kept] == [row[:last] for row in rows]
     # the wall times are the first computation's: nothing was computed again
     assert np.array_equal(open_sweep(folder)["wall_s"], walls)
-
-
-def kill_in_the_middle(arguments, folder, pause):
-    """Start a sweep, and kill it with -9 some time after its first row."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "fem", "sweep", *arguments],
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        cwd=folder,
-        stderr=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-    )
-    deadline = time.monotonic() + 60.0
-    log = folder / "outputs" / "small" / "rows.csv"
-    size = log.stat().st_size if log.exists() else 0
-    while process.poll() is None and time.monotonic() < deadline:
-        if log.exists() and log.stat().st_size > size:
-            break
-        time.sleep(0.005)
-    time.sleep(pause)
-    process.kill()
-    process.wait()
-
-
-@pytest.mark.slow
-def test_a_sweep_killed_twenty_times_gives_the_same_table(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    text = SMALL.replace("count = 5", "count = 80")
-    (tmp_path / "small.toml").write_text(text, encoding="utf-8")
-    choice = random.Random(0)
-    for k in range(20):
-        kill_in_the_middle(["small.toml", *(["--resume"] if k else [])], tmp_path, choice.uniform(0.0, 0.3))
-    assert main(["sweep", "small.toml", "--resume", "-q"]) == 0
-    assert main(["sweep", "small.toml", "-q", "--out", "alone"]) == 0
-    assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "alone")
-    capsys.readouterr()
 
 
 def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path):
