@@ -241,13 +241,34 @@ def read_hall(path: Path) -> HallFile:
     is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
     read = [name for name in names if name and not (is_result and name in RESULT_COLUMNS)]
     problems, meanings = [], dict[str, str]()
+
+    def stem(name: str) -> str:
+        return UNIT.sub("", name.lower().replace(" ", "_").replace("-", "_")).strip("_ ")
+
+    plain = [key.rpartition(".")[2] for known in _plain_names().values() for key in known]
+    stems = {stem(name): name for name in plain} | OTHER_NAMES
     for column, count in Counter(read).items():
+        table_name, dot, _ = column.partition(".")
+        meant, own = _plain_names().get(column.lower(), []), stem(column)
+        # without its unit the same as a known name, or very like it
+        near = difflib.get_close_matches(own, stems, n=1, cutoff=LIKE) if len(own) > 1 and not meant else []
         try:
             if count > 1:
                 raise AxisError(f"occurs {count} times; keep one")
             if column in RESULT_COLUMNS:
                 raise AxisError("has the name of a result; rename it")
-            meanings[column] = _meaning(column)
+            if dot and difflib.get_close_matches(table_name.lower(), NAMED, n=1, cutoff=LIKE):
+                field_of(column)
+                meanings[column] = "" if column in NO_AXIS or table_name == "document" else column
+            elif len(meant) > 1:
+                raise AxisError(f"may be {' or '.join(meant)}; write one of them")
+            elif near:
+                raise AxisError(
+                    f"is no key of a case; did you mean {stems[near[0]]!r}? To keep it as a note, rename it, for "
+                    f"instance to 'note {column}'"
+                )
+            else:
+                meanings[column] = meant[0] if meant else ""
         except AxisError as error:
             problems.append(f"column {column!r} {error}")
     for meaning, count in Counter(filter(None, meanings.values())).items():
@@ -257,31 +278,6 @@ def read_hall(path: Path) -> HallFile:
     if problems:
         raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
     return HallFile(path=path, table=table, header=names, meanings=meanings)
-
-
-def _meaning(column: str) -> str:
-    """A dotted key, a name of `OWN`, or "" for what is kept; AxisError for what is like a key, or may be several."""
-    table, dot, _ = column.partition(".")
-    if dot and difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE):
-        field_of(column)
-        return "" if column in NO_AXIS or table == "document" else column
-    meant = _plain_names().get(column.lower(), [])
-    if len(meant) > 1:
-        raise AxisError(f"may be {' or '.join(meant)}; write one of them")
-
-    def stem(name: str) -> str:
-        return UNIT.sub("", name.lower().replace(" ", "_").replace("-", "_")).strip("_ ")
-
-    # without its unit the same, or very like it
-    names = [key.rpartition(".")[2] for known in _plain_names().values() for key in known]
-    stems, own = {stem(name): name for name in names} | OTHER_NAMES, stem(column)
-    near = difflib.get_close_matches(own, stems, n=1, cutoff=LIKE) if len(own) > 1 and not meant else []
-    if near:
-        raise AxisError(
-            f"is no key of a case; did you mean {stems[near[0]]!r}? To keep it as a note, rename it, for instance to "
-            f"'note {column}'"
-        )
-    return meant[0] if meant else ""
 
 
 @cache

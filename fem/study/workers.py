@@ -17,7 +17,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from itertools import islice
 from multiprocessing import get_context
@@ -155,8 +155,14 @@ def hand_out(
                     chunk = list(islice(remaining, at_a_time))
                     if not chunk:
                         break
-                    with _signals_held():  # it may start a process
+                    # It may start a process. A signal to the whole group, as Ctrl-C sends it, is held back in it for
+                    # good: it would else meet the process before `_end_with_parent` does.
+                    held = () if sys.platform == "win32" else signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+                    try:
                         waiting[pool.executor.submit(work, chunk)] = pool, chunk
+                    finally:
+                        if sys.platform != "win32":
+                            signal.pthread_sigmask(signal.SIG_SETMASK, held)
                     pool.given += 1
             if not waiting:
                 break
@@ -183,22 +189,6 @@ def hand_out(
     finally:
         for future in waiting:
             future.cancel()
-
-
-@contextmanager
-def _signals_held() -> Iterator[None]:
-    """Hold back what ends this process, and in processes that are started now for good.
-
-    A signal to the whole group, as Ctrl-C sends it, would else meet them before `_end_with_parent` does.
-    """
-    if sys.platform == "win32":
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def unguarded() -> str | None:

@@ -18,6 +18,7 @@ import fem
 import fem.study.runner as many
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
+from fem.case.overrides import parse_override
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
 from fem.results.figures import SCALARS
@@ -116,28 +117,18 @@ def test_a_stop_ends_the_handing_out():
     assert 10 <= len(reached) <= 20
 
 
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [
-        ("contact.mu_static", 0.3),
-        ("floor.slope_percent", 1.0),
-        ("initial.rotation_rad", 0.01),
-        ("output.history_s", 0.01),
-        ("container.damping_ratio", 0.1),
-        ("support.effective_width", 0.98),
-        ("gravity_m_s2", 9.0),
-        ("container.mass_kg", 2000.0),
-        ("container.centroid_m", 0.49),
-        ("support.kind", "flat"),
-        ("solver.element_size_m", 0.3),
-        ("solver.order", 1),
-        ("output.stop_when_overturned", False),
-        ("stop", [{"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}]),
-    ],
-)
-def test_a_container_is_taken_again_where_its_key_is_the_same_and_nowhere_else(key, value):
+OF_A_CASE = """
+contact.mu_static=0.3 floor.slope_percent=1.0 initial.rotation_rad=0.01 output.history_s=0.01
+container.damping_ratio=0.1 support.effective_width=0.98 gravity_m_s2=9.0 container.mass_kg=2000.0
+container.centroid_m=0.49 support.kind=flat solver.element_size_m=0.3 solver.order=1 output.stop_when_overturned=false
+"""
+A_STOP = {"stop": [{"side": "right", "height_m": 0.1, "gap_m": 0.05, "stiffness_N_m": 1e8}]}
+
+
+@pytest.mark.parametrize("change", [*(dict([parse_override(one)]) for one in OF_A_CASE.split()), A_STOP])
+def test_a_container_is_taken_again_where_its_key_is_the_same_and_nowhere_else(change):
     cache, base = ContainerCache(), load_case("seed_stack_plateau", [*SHORT, "solver.model=rigid"])
-    changed = CaseMaker(base)({key: value}) if "." in key else base.with_values({key: value})
+    changed = CaseMaker(base)(change) if "." in next(iter(change)) else base.with_values(change)
     same = container_key(changed) == container_key(base)
     first = cache.container_of(base)
     assert (cache.container_of(changed) is first) == same
