@@ -20,8 +20,7 @@ from fem.case.case import Case, CaseError
 from fem.case.tables.run_tables import StaticTable
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
-from fem.seismic.body import LooseBody
-from fem.seismic.method import utilisation
+from fem.seismic.body import LooseBody, utilisation
 from fem.seismic.wind import STABILISING, pressure_of, wind_rows
 from mesh.container import ContainerMesh
 
@@ -44,7 +43,7 @@ class CheckResult:
 
     @property
     def utilisation(self) -> float:
-        """See `fem.seismic.method.utilisation`."""
+        """See `fem.seismic.body.utilisation`."""
         return utilisation(self.demand, self.capacity)
 
     @property

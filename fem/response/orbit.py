@@ -130,11 +130,9 @@ def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: floa
     return DrivenModel(model=replace(model, run=run), body=body, run=run, period=period)
 
 
-#: called with the time [s], the rotation [rad] and the mode
-Progress = Callable[[float, float, int], None]
+Progress = Callable[[float, float, int], None]  #: called with the time [s], the rotation [rad] and the mode
 
-#: periods after which the energy balance is checked as that of a run
-AUDITED = 10
+AUDITED = 10  #: periods after which the energy balance is checked as that of a run
 STATUSES = {REACHED: "completed", OVERTURNED: "overturned", FAILED: "failed"}
 #: columns of `Orbit.sections`
 SECTION_COLUMNS = ("rotation_rad", "angular_velocity_rad_s", "centre_velocity_m_s", "slip_gained_m")

@@ -63,8 +63,7 @@ WINDOWS = 4  #: a motion that is not settled is observed again, at most so many 
 SEED = 1  #: of the random states
 REACH = (0.6, 0.7)  #: of random states: rotation over the slenderness angle al, angular velocity over al p
 PHASES = 3  #: sections of a motion from which it is followed to a neighbour, at most
-#: at rest: for so long, in 1/p, it neither turned beyond the limit of a verdict nor slid
-STILL = 2.0
+STILL = 2.0  #: at rest: for so long, in 1/p, it neither turned beyond the limit of a verdict nor slid
 STILL_SLIP = 1e-6  #: over the width, between two checks
 LOOK = 0.02  #: between two checks, in 1/p
 PATIENCE = 400.0  #: followed at most, in 1/p

@@ -1,42 +1,37 @@
-"""Seismic action at a site: elastic spectra, ground displacement, factors.
+"""Seismic action at a site: elastic spectra, ground displacement, factors; or the spectrum of a floor that is given.
 
 EN 1998-1:2004, 3.2.2.2 to 3.2.2.5 and Annex A, recommended values of tables 3.2 to 3.4; the zones and subsoils of
 DIN EN 1998-1/NA:2011; or parameters of another annex. Accelerations are magnitudes in m/s2, periods in s, damping
 ratios of critical damping.
+
+The given spectrum of a floor belongs to the floor on which a body stands, so no building filters it again and no factor
+is applied to it. Between its points logarithms are straight over logarithms; before the first the floor moves as one
+body, beyond the last the displacement stays.
 """
 
 import math
-from dataclasses import dataclass, replace
-from typing import Protocol
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from fem.records.source import decoded
+from fem.records.table import UserTable
 from fem.runtime.arrays import FloatArray
+from fem.runtime.user_files import read_regular
 
-#: damping of the spectra to which motions are matched (3.2.3.1.2)
-DAMPING_RATIO = 0.05
-#: amplification of the plateau, horizontal (3.3) and vertical (3.9)
-PLATEAU, VERTICAL_PLATEAU = 2.5, 3.0
-#: (3.6)
-LEAST_DAMPING_CORRECTION = 0.55
+DAMPING_RATIO = 0.05  #: damping of the spectra to which motions are matched (3.2.3.1.2)
+PLATEAU, VERTICAL_PLATEAU = 2.5, 3.0  #: amplification of the plateau, horizontal (3.3) and vertical (3.9)
+LEAST_DAMPING_CORRECTION = 0.55  #: (3.6)
 #: range of the formulas (3.2) to (3.5); Annex A continues from there
 LAST_PERIOD_S, LAST_PERIOD_ANNEX_A_S = 4.0, 10.0
-#: gamma_I and gamma_a that are accepted
-FACTORS = (0.5, 2.0)
-
-
-class MotionTarget(Protocol):
-    """What motions are made to fit: elastic spectra, and the peak that belongs to them."""
-
-    @property
-    def surface_acceleration(self) -> float:
-        """Horizontal spectrum at T = 0 [m/s2]."""
-
-    def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
-        """At periods (n,) [s], shape (n,) [m/s2]."""
-
-    def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
-        """At periods (n,) [s], shape (n,) [m/s2]."""
+FACTORS = (0.5, 2.0)  #: gamma_I and gamma_a that are accepted
+#: columns of the given spectrum of a floor
+PERIOD, HORIZONTAL, VERTICAL = "period_s", "acceleration_m_s2", "vertical_acceleration_m_s2"
+#: its first period, at which it is taken for the peak of the floor, and its last, at least [s]
+LATEST_FIRST_S, LEAST_LAST_S = 0.05, 1.0
+LARGEST_FILE = 1_000_000  #: [bytes]; a spectrum has some tens of points
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +64,7 @@ class SpectrumShape:
                 )
 
 
-#: T_E of Annex A, by ground [s]
-_ANNEX_A = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}
+_ANNEX_A = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}  #: T_E of Annex A, by ground [s]
 #: tables 3.2 and 3.3: S, T_B, T_C, T_D by type and ground
 _EUROCODE = {
     1: {
@@ -88,12 +82,10 @@ _EUROCODE = {
         "E": (1.6, 0.05, 0.25, 1.2),
     },
 }
-#: table 3.4
-_EUROCODE_VERTICAL_RATIO = {1: 0.90, 2: 0.45}
+_EUROCODE_VERTICAL_RATIO = {1: 0.90, 2: 0.45}  #: table 3.4
 _EUROCODE_VERTICAL_PERIODS = (0.05, 0.15, 1.0)
 
-#: a_gR of the zones of DIN EN 1998-1/NA:2011 [m/s2]
-GERMAN_ZONES = {1: 0.4, 2: 0.6, 3: 0.8}
+GERMAN_ZONES = {1: 0.4, 2: 0.6, 3: 0.8}  #: a_gR of the zones of DIN EN 1998-1/NA:2011 [m/s2]
 #: subsoil: S, horizontal T_B, T_C, T_D; vertical T_B
 _GERMAN = {
     "A-R": ((1.00, 0.05, 0.20, 2.0), 0.05),
@@ -247,23 +239,18 @@ class SiteAction:
         _, third, fourth = self.shape.corner_periods
         return 0.025 * self.surface_acceleration * third * fourth
 
-    def times(self, factor: float) -> "SiteAction":
-        """This action with its accelerations multiplied by a factor."""
-        return replace(self, reference_acceleration=factor * self.reference_acceleration)
-
     def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
         """Horizontal elastic spectrum S_e (3.2) to (3.5), beyond 4 s Annex A, at the periods (n,) [s]; (n,) [m/s2].
 
         Where no T_E is known, the displacement stays constant beyond 4 s, which is not below Annex A.
         """
         corners, eta = self.shape.corner_periods, damping_correction(damping_ratio)
-        spectrum = _elastic(
-            periods, self.surface_acceleration, self.shape.plateau, corners, eta, self.shape.flat_to
-        )
+        spectrum = self._elastic(periods, self.surface_acceleration, self.shape.plateau, corners, eta)
         if self.shape.annex_a_corner is None:
             return spectrum
-        displacement = self._annex_a(periods, self.shape.annex_a_corner, eta)
         begin = self.shape.annex_a_corner
+        share = np.clip((periods - begin) / (LAST_PERIOD_ANNEX_A_S - begin), 0.0, 1.0)  # (A.1), (A.2)
+        displacement = self.ground_displacement * (PLATEAU * eta + share * (1.0 - PLATEAU * eta))
         beyond = periods >= begin
         spectrum[beyond] = displacement[beyond] * (2.0 * math.pi / periods[beyond]) ** 2
         return spectrum
@@ -271,19 +258,24 @@ class SiteAction:
     def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
         """Vertical elastic spectrum S_ve (3.8) to (3.11) at the periods (n,) [s], shape (n,) [m/s2]."""
         corners, eta = self.shape.vertical_corner_periods, damping_correction(damping_ratio)
-        return _elastic(
-            periods,
-            self.vertical_acceleration,
-            self.shape.vertical_plateau,
-            corners,
-            eta,
-            self.shape.flat_to,
-        )
+        return self._elastic(periods, self.vertical_acceleration, self.shape.vertical_plateau, corners, eta)
 
-    def _annex_a(self, periods: FloatArray, begin: float, eta: float) -> FloatArray:
-        """Elastic displacement spectrum from T_E on, Annex A (A.1), (A.2), shape (n,) [m]."""
-        share = np.clip((periods - begin) / (LAST_PERIOD_ANNEX_A_S - begin), 0.0, 1.0)
-        return self.ground_displacement * (PLATEAU * eta + share * (1.0 - PLATEAU * eta))
+    def _elastic(
+        self,
+        periods: FloatArray,
+        peak: float,
+        plateau: float,
+        corners: tuple[float, float, float],
+        eta: float,
+    ) -> FloatArray:
+        """(3.2) to (3.5), or (3.8) to (3.11), at the periods (n,); `peak` at T = 0 [m/s2], and on to T_A."""
+        first, second, third = corners
+        flat, flat_to = plateau * peak * eta, self.shape.flat_to
+        way = np.maximum(periods - flat_to, 0.0) / (first - flat_to)
+        rising = peak * (1.0 + way * (plateau * eta - 1.0))
+        with np.errstate(divide="ignore"):
+            falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
+        return np.where(periods < first, rising, np.where(periods <= second, flat, falling))
 
 
 def damping_correction(damping_ratio: float) -> float:
@@ -297,19 +289,95 @@ def damping_correction(damping_ratio: float) -> float:
     return max(math.sqrt(10.0 / (5.0 + 100.0 * damping_ratio)), LEAST_DAMPING_CORRECTION)
 
 
-def _elastic(
-    periods: FloatArray,
-    peak: float,
-    plateau: float,
-    corners: tuple[float, float, float],
-    eta: float,
-    flat_to: float,
-) -> FloatArray:
-    """(3.2) to (3.5), or (3.8) to (3.11), at the periods (n,); `peak` at T = 0 [m/s2], and on to `flat_to` [s]."""
-    first, second, third = corners
-    flat = plateau * peak * eta
-    way = np.maximum(periods - flat_to, 0.0) / (first - flat_to)
-    rising = peak * (1.0 + way * (plateau * eta - 1.0))
-    with np.errstate(divide="ignore"):
-        falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
-    return np.where(periods < first, rising, np.where(periods <= second, flat, falling))
+@dataclass(frozen=True, kw_only=True)
+class FloorSpectrum:
+    """Elastic spectra of a floor.
+
+    Raises:
+        ValueError: periods that do not rise from 0.05 s or less to 1 s or more, or values that are not positive.
+    """
+
+    periods: tuple[float, ...]  #: (n,) [s]
+    accelerations: tuple[float, ...]  #: (n,) [m/s2]
+    vertical_accelerations: tuple[float, ...] = ()  #: (n,) [m/s2]; empty: the vertical of the ground
+    ground: SiteAction  #: below the building
+
+    def __post_init__(self) -> None:
+        for name, values in (
+            (HORIZONTAL, self.accelerations),
+            (VERTICAL, self.vertical_accelerations or self.accelerations),
+        ):
+            if len(values) != len(self.periods):
+                raise ValueError(f"{PERIOD} has {len(self.periods)} values and {name} {len(values)}")
+            if not (np.isfinite(values).all() and min(values, default=0.0) > 0.0):
+                raise ValueError(f"{name} must be positive and finite")
+        rising = np.isfinite(self.periods).all() and (np.diff((0.0, *self.periods)) > 0.0).all()
+        if not rising or self.periods[0] > LATEST_FIRST_S or self.periods[-1] < LEAST_LAST_S:
+            raise ValueError(
+                f"{PERIOD} must rise from {LATEST_FIRST_S:g} s or less, where the spectrum is the peak of the floor, "
+                f"to {LEAST_LAST_S:g} s or more"
+            )
+
+    @property
+    def surface_acceleration(self) -> float:
+        """Peak of the floor [m/s2]."""
+        return self.accelerations[0]
+
+    def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+        """Horizontal spectrum at periods (n,) [s], shape (n,) [m/s2]; at another damping corrected by (3.6)."""
+        return self._at(periods, self.accelerations, damping_ratio)
+
+    def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+        """Vertical spectrum at periods (n,) [s], shape (n,) [m/s2]; that of the ground where none is given."""
+        if not self.vertical_accelerations:
+            return self.ground.vertical(periods, damping_ratio)
+        return self._at(periods, self.vertical_accelerations, damping_ratio)
+
+    def _at(self, periods: FloatArray, values: Sequence[float], damping_ratio: float) -> FloatArray:
+        first, last = self.periods[0], self.periods[-1]
+        inside = np.log(np.clip(periods, first, last))
+        spectrum = np.exp(np.interp(inside, np.log(self.periods), np.log(values)))
+        slower = np.minimum(last / np.maximum(periods, first), 1.0) ** 2
+        share = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
+        return np.asarray(share * spectrum * slower)
+
+
+#: what motions are made to fit: elastic spectra, and the peak that belongs to them
+MotionTarget = SiteAction | FloorSpectrum
+
+
+def read_spectrum(path: Path) -> dict[str, tuple[float, ...]]:
+    """The columns of a CSV file by name, as any spreadsheet writes them: a line that names them, and lines of numbers.
+
+    period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2.
+
+    Raises:
+        ValueError: it cannot be read, has other columns, or a line without a number for each.
+    """
+    table, choices = (
+        UserTable(path.name, spectrum_text(path)),
+        ([PERIOD, HORIZONTAL], [PERIOD, HORIZONTAL, VERTICAL]),
+    )
+    names = table.header
+    if names not in choices:
+        actual = f"got {','.join(names)[:80]!r}" if names else "and the file is empty"
+        raise ValueError(
+            f"{path.name}: the first line must be {' or '.join(map(','.join, choices))}, {actual}"
+        )
+    table.require_one_decimal_mark(range(len(names)))
+    rows = [line.numbers() for line in table.lines if len(line.fields) == len(names)]
+    if not rows or [len(row) for row in rows] != [len(names)] * len(table.lines):
+        raise ValueError(f"{path.name}: every further line must hold {len(names)} numbers")
+    return dict(zip(names, zip(*rows, strict=True), strict=True))
+
+
+def spectrum_text(path: Path) -> str:
+    """The text of a file of such points.
+
+    Raises:
+        ValueError: it cannot be read.
+    """
+    try:
+        return decoded(read_regular(path, LARGEST_FILE)) or ""
+    except ValueError as error:
+        raise ValueError(f"{path.name} {error}") from None

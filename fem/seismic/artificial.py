@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -29,12 +30,10 @@ STEP_S = 0.005
 RISE_S, DECAY_S = 2.0, 6.0
 END_SHARE = 0.05
 TAPER_S = 0.5
-#: EN 1998-1, 3.2.3.1.2(3)
-LEAST_STATIONARY_S = 10.0
+LEAST_STATIONARY_S = 10.0  #: EN 1998-1, 3.2.3.1.2(3)
 MOST_STATIONARY_S = 60.0
 SHORTEST_PERIOD_S = 0.02
-#: the longest period is matched from beyond it
-BEYOND = 1.05
+BEYOND = 1.05  #: the longest period is matched from beyond it
 PERIODS_PER_DECADE = 43
 #: of a motion of a set, whose spectrum is then 2.7 % off in the root mean square; after 15 it is 3.3 %
 PASSES = 25
@@ -42,17 +41,13 @@ PASSES = 25
 #: longest periods; without them the spectrum is 5 % off there
 TRANSFORMED = 3.0
 HIGHEST_HZ = 80.0
-#: below this frequency times the longest period the first amplitudes fall off
-LOW = 0.4
+LOW = 0.4  #: below this frequency times the longest period the first amplitudes fall off
 #: of the target at zero period: where peaks are rounded off from, and what they never reach
 KNEE, CEILING = 1.045, 1.1
-#: period of the wavelet that raises a peak [s]
-WAVELET_S = 0.03
-#: factor on a whole set, at most, that makes its mean peak and mean spectra suffice
-MOST_FACTOR = 1.05
+WAVELET_S = 0.03  #: period of the wavelet that raises a peak [s]
+MOST_FACTOR = 1.05  #: factor on a whole set, at most, that makes its mean peak and mean spectra suffice
 
-#: periods (n,) [s] -> pseudo-accelerations (n,) [m/s2]
-Target = Callable[[FloatArray], FloatArray]
+Target = Callable[[FloatArray], FloatArray]  #: periods (n,) [s] -> pseudo-accelerations (n,) [m/s2]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +120,9 @@ class Shaper:
         """
         peak = float(target(np.zeros(1))[0])
         wanted = target(self.periods)
-        spectrum = self._amplitudes(wanted) * np.exp(2j * np.pi * _uniform(stream, self.log_periods.size))
+        raw = np.random.PCG64(np.random.SeedSequence(list(stream))).random_raw(self.log_periods.size)
+        phases = np.asarray((raw >> np.uint64(11)) * 2.0**-53)  # over a turn, from 0 to 1
+        spectrum = self._amplitudes(wanted) * np.exp(2j * np.pi * phases)
         motion = irfft(spectrum, self.transformed)[: self.times.size] * self.envelope
         motion *= peak / np.abs(motion).max()
         motion = self._finished(motion, peak)
@@ -136,14 +133,10 @@ class Shaper:
             if error < least:
                 best, least = motion, error
             if more:
-                motion = self._amplified(motion, ratios, peak)
+                gains = np.exp(np.interp(self.log_periods, np.log(self.periods), np.log(ratios)))
+                changed = irfft(rfft(motion, self.transformed) * gains, self.transformed)
+                motion = self._finished(changed[: self.times.size], peak)
         return best
-
-    def _amplified(self, motion: FloatArray, ratios: FloatArray, peak: float) -> FloatArray:
-        """The motion (n,) with each harmonic times the ratio (k,) at its period."""
-        gains = np.exp(np.interp(self.log_periods, np.log(self.periods), np.log(ratios)))
-        changed = irfft(rfft(motion, self.transformed) * gains, self.transformed)
-        return self._finished(changed[: self.times.size], peak)
 
     def _finished(self, motion: FloatArray, peak: float) -> FloatArray:
         """The motion (n,) as it may be used: with the peak of the target, tapered, ending at rest where it began."""
@@ -222,14 +215,7 @@ def artificial_motions(
 
 
 def artificial_set(
-    action: MotionTarget,
-    *,
-    count: int,
-    seed: int,
-    stationary: float = 12.0,
-    longest: float = LAST_PERIOD_S,
-    vertical: bool = True,
-    second: float = 0.0,
+    action: MotionTarget, *, count: int, longest: float = LAST_PERIOD_S, **asked: Any
 ) -> list[GroundMotion]:
     """Motions to be used together: a motion that is correlated with one before is left out, and the next one taken.
 
@@ -240,26 +226,10 @@ def artificial_set(
     number = 0
     while len(kept) < count:
         number += 1
-        (motion,) = artificial_motions(
-            action,
-            count=1,
-            seed=seed,
-            stationary=stationary,
-            longest=longest,
-            vertical=vertical,
-            second=second,
-            first=number,
-        )
+        (motion,) = artificial_motions(action, count=1, longest=longest, first=number, **asked)
         if largest_correlation([*kept, motion]) <= MOST_CORRELATION:
             kept.append(replace(motion, name=f"motion_{len(kept) + 1:02d}"))
     check = check_set(kept, action, longest=longest)
-    needed = max(check.wanted_peak / check.mean_peak, LEAST_SHARE / check.least_ratio)
     upward = LEAST_SHARE / (check.vertical_least_ratio or LEAST_SHARE)
-    factors = [min(max(1.0, factor), MOST_FACTOR) for factor in (needed, upward)]
+    factors = [min(max(1.0, factor), MOST_FACTOR) for factor in (check.factor_needed, upward)]
     return kept if factors == [1.0, 1.0] else [motion.scaled(*factors) for motion in kept]
-
-
-def _uniform(stream: Sequence[int], count: int) -> FloatArray:
-    """Random numbers from 0 to 1, shape (count,)."""
-    raw = np.random.PCG64(np.random.SeedSequence(list(stream))).random_raw(count)
-    return np.asarray((raw >> np.uint64(11)) * 2.0**-53)

@@ -21,20 +21,17 @@ from fem.records.spectrum import oscillator_response
 from fem.runtime.arrays import FloatArray
 from fem.seismic.ground_motion import GroundMotion, sampled_at
 
-#: factors on the period, which is not known more precisely
-PERIOD_FACTORS = (0.85, 1.0, 1.15)
+PERIOD_FACTORS = (0.85, 1.0, 1.15)  #: factors on the period, which is not known more precisely
 MODE_AT_TOP = 1.5
 #: up to which one mode is good for the floors of low, stiff buildings, and beyond which it is refused [s]
 ONE_MODE_TO_S, ONE_MODE_REFUSED_S = 0.5, 0.7
 HIGHEST_HZ = 33.0
 #: samples of a period, at least: of the building, and of its fastest mode
 SAMPLES_PER_PERIOD, SAMPLES_OF_FASTEST = 20.0, 10.0
-#: share to which the building swings out before the motion ends
-SWUNG_OUT = 0.01
+SWUNG_OUT = 0.01  #: share to which the building swings out before the motion ends
 SHORTEST_PERIOD_S = 0.02
 LEAST_DAMPING, MOST_DAMPING = 0.005, 0.3  #: ratios of a building
-#: of a storey: how far z/H may lie from a floor
-BETWEEN_FLOORS = 0.05
+BETWEEN_FLOORS = 0.05  #: of a storey: how far z/H may lie from a floor
 BuildingKind = Literal["shear", "cantilever"]
 
 

@@ -9,7 +9,7 @@ cut at its ends.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -22,11 +22,10 @@ from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, MotionTarget
 from fem.seismic.artificial import Target
 from fem.seismic.ground_motion import GroundMotion, sampled_at
-from fem.seismic.motion_set import FIRST_PERIOD_S, LEAST_SHARE, check_set, periods_of_check
+from fem.seismic.motion_set import FIRST_PERIOD_S, check_set, periods_of_check
 from fem.seismic.oscillators import pseudo_accelerations
 
-#: records are sampled at least this densely while they are matched [s]
-LARGEST_STEP_S = 0.005
+LARGEST_STEP_S = 0.005  #: records are sampled at least this densely while they are matched [s]
 SHORTEST_PERIOD_S = 0.02
 MATCHED_PERIODS = 70
 LEVELLING_PASSES, PASSES = 4, 14
@@ -54,7 +53,7 @@ def scaled_records(
     for record in records:
         spectrum = response_spectrum(record.step, record.horizontal, periods).pseudo_acceleration_m_s2
         scaled.append(record.scaled(math.exp(float(np.mean(np.log(target / spectrum))))))
-    needed = _factor_needed(scaled, action, longest)
+    needed = check_set(scaled, action, longest=longest).factor_needed
     return [record.scaled(needed) for record in scaled]
 
 
@@ -75,46 +74,30 @@ def matched_records(
     """
     matched = []
     for record in records:
-        step = min(record.step, LARGEST_STEP_S)
-        upward = None
+        upward = across = None
         if record.vertical is not None:
-            upward = _matched(step, sampled_at(step, record.step, record.vertical), action.vertical, longest)
-        horizontal = sampled_at(step, record.step, record.horizontal)
-        across = None
+            upward = _matched(record.step, record.vertical, action.vertical, longest)
         if record.second is not None and second > 0.0:
-            other = sampled_at(step, record.step, record.second)
-            across = second * _matched(step, other, action.horizontal, longest)
+            across = second * _matched(record.step, record.second, action.horizontal, longest)
         matched.append(
             replace(
                 record,
-                step=step,
-                horizontal=_matched(step, horizontal, action.horizontal, longest),
+                step=min(record.step, LARGEST_STEP_S),
+                horizontal=_matched(record.step, record.horizontal, action.horizontal, longest),
                 vertical=upward,
                 second=across,
                 origin=f"{record.origin}, matched",
             )
         )
-    needed = max(1.0, _factor_needed(matched, action, longest))
+    needed = max(1.0, check_set(matched, action, longest=longest).factor_needed)
     return [record.scaled(needed) for record in matched]
 
 
-def _factor_needed(motions: Sequence[GroundMotion], action: MotionTarget, longest: float) -> float:
-    """Least factor on a set with which its mean peak and mean spectrum fulfil the code."""
-    check = check_set(motions, action, longest=longest)
-    return max(check.wanted_peak / check.mean_peak, LEAST_SHARE / check.least_ratio)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Bank:
-    """Oscillators of all periods matched, and what one sample of acceleration does to them later on."""
-
-    periods: FloatArray  #: (m,) [s]
-    recursions: tuple[tuple[FloatArray, FloatArray], ...]  #: of pseudo-acceleration over acceleration
-    impulses: FloatArray  #: response to a unit sample, (m, n)
-
-
 @lru_cache(maxsize=2)
-def _bank(step: float, count: int, longest: float) -> _Bank:
+def _bank(
+    step: float, count: int, longest: float
+) -> tuple[FloatArray, list[tuple[FloatArray, FloatArray]], FloatArray]:
+    """Periods (m,) [s], recursions from acceleration to pseudo-acceleration, responses to a unit sample (m, n)."""
     periods = np.geomspace(max(SHORTEST_PERIOD_S, 2.0 * step), longest, MATCHED_PERIODS)
     recursions, impulses = [], []
     unit = np.zeros(count)
@@ -124,25 +107,29 @@ def _bank(step: float, count: int, longest: float) -> _Bank:
         square = (2.0 * math.pi / period) ** 2
         recursions.append((square * np.array(numerator), np.array(denominator)))
         impulses.append(lfilter(*recursions[-1], unit))
-    return _Bank(periods=periods, recursions=tuple(recursions), impulses=np.array(impulses))
+    return periods, recursions, np.array(impulses)
 
 
-def _matched(step: float, acceleration: FloatArray, target: Target, longest: float) -> FloatArray:
-    """The acceleration (n,) with wavelets added until its spectrum is the target."""
-    bank = _bank(step, acceleration.size, longest)
+def _matched(present_step: float, recorded: FloatArray, target: Target, longest: float) -> FloatArray:
+    """The acceleration (n,) with wavelets added until its spectrum is the target, at `LARGEST_STEP_S` or finer."""
+    step = min(present_step, LARGEST_STEP_S)
+    acceleration = sampled_at(step, present_step, recorded)
+    periods, recursions, impulses = _bank(step, acceleration.size, longest)
     times = np.arange(acceleration.size, dtype=np.float64) * step
-    zero_end, wanted = ZeroEnd(times=times), target(bank.periods)
-    present = _levelled(step, acceleration, wanted, bank.periods)
+    zero_end, wanted = ZeroEnd(times=times), target(periods)
+    present = _levelled(step, acceleration, wanted, periods)
     present = present - zero_end.baseline(present)
     best, least = present, math.inf
     for _ in range(PASSES):
-        responses = np.array([lfilter(*recursion, present) for recursion in bank.recursions])
+        responses = np.array([lfilter(*recursion, present) for recursion in recursions])
         samples, peaks = _peaks(responses)
         error = float(np.mean((np.abs(peaks) / wanted - 1.0) ** 2))
         if error < least:
             best, least = present, error
-        waves = _wavelets(bank.periods, times, samples)
-        influence = _influence(bank, waves, samples)
+        waves = _wavelets(periods, times, samples)
+        # of wavelet j on oscillator i at its sample (m, m)
+        pairs = zip(impulses, samples.tolist(), strict=True)
+        influence = np.array([waves[:, : sample + 1] @ impulse[sample::-1] for impulse, sample in pairs])
         own = np.diag(influence).copy()
         influence = SHARE_OF_OTHERS * influence / own
         np.fill_diagonal(influence, 1.0)
@@ -192,11 +179,3 @@ def _wavelets(periods: FloatArray, times: FloatArray, samples: np.ndarray) -> Fl
     rates, widths = (np.broadcast_to(values[:, None], near.shape)[near] for values in (damped, width))
     waves[near] = np.cos(rates * shifted[near]) * np.exp(-((shifted[near] / widths) ** 2))
     return waves
-
-
-def _influence(bank: _Bank, waves: FloatArray, samples: np.ndarray) -> FloatArray:
-    """Response of oscillator i at its sample to wavelet j, shape (m, m)."""
-    rows = []
-    for impulse, sample in zip(bank.impulses, samples.tolist(), strict=True):
-        rows.append(waves[:, : sample + 1] @ impulse[sample::-1])
-    return np.array(rows)

@@ -5,7 +5,7 @@ the code's spectrum that matters to it: 0.05 s to 4 s, and on to the longest per
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -18,17 +18,14 @@ from fem.seismic.ground_motion import GroundMotion, sampled_at
 
 CLAUSE = "EN 1998-1:2004, 3.2.3.1.2"
 LEAST_MOTIONS = 3  #: (4)a
-#: (4)c
-LEAST_SHARE = 0.9
+LEAST_SHARE = 0.9  #: (4)c
 #: of accelerations, at no shift; between motions, and between the components of one (ASCE/SEI 43-05 asks the latter)
 MOST_CORRELATION = 0.3
-#: from which two motions are one and the same, shifted, reversed in time or scaled
-COPY_CORRELATION = 0.8
+COPY_CORRELATION = 0.8  #: from which two motions are one and the same, shifted, reversed in time or scaled
 FIRST_PERIOD_S = 0.05
 PERIODS_SHOWN = 100
 SHORTEST_SHOWN_S = 0.02
-#: largest shortfall that is rounding
-ROUNDING = 1e-9
+ROUNDING = 1e-9  #: largest shortfall that is rounding
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,6 +87,11 @@ class MotionSetCheck:
         """Whether the set may be used."""
         return not self.reasons
 
+    @property
+    def factor_needed(self) -> float:
+        """Least factor on the set with which its mean peak and mean spectrum fulfil the code."""
+        return max(self.wanted_peak / self.mean_peak, LEAST_SHARE / self.least_ratio)
+
 
 def check_set(
     motions: Sequence[GroundMotion],
@@ -110,20 +112,16 @@ def check_set(
     periods = periods_of_check(longest)
     inside = (periods >= FIRST_PERIOD_S) & (periods <= longest * (1.0 + 1e-9))
 
-    def spectra(
-        target: Callable[[FloatArray], FloatArray], components: Sequence[FloatArray | None]
-    ) -> ComponentSpectra | None:
-        """None where a motion lacks this component."""
-        known = [component for component in components if component is not None]
-        if len(known) < len(motions):
-            return None
-        return ComponentSpectra(target=target(periods), motions=_spectra(motions, known, periods))
+    def spectra(target: FloatArray, name: str) -> ComponentSpectra:
+        pairs = ((motion.step, getattr(motion, name)) for motion in motions)
+        found = [response_spectrum(*pair, periods).pseudo_acceleration_m_s2 for pair in pairs]
+        return ComponentSpectra(target=target, motions=np.array(found))
 
-    horizontal = ComponentSpectra(
-        target=action.horizontal(periods), motions=_spectra(motions, [m.horizontal for m in motions], periods)
+    horizontal = spectra(action.horizontal(periods), "horizontal")
+    vertical, across = (
+        spectra(target, name) if all(getattr(motion, name) is not None for motion in motions) else None
+        for target, name in ((action.vertical(periods), "vertical"), (second * horizontal.target, "second"))
     )
-    vertical = spectra(action.vertical, [motion.vertical for motion in motions])
-    across = spectra(lambda periods: second * horizontal.target, [motion.second for motion in motions])
     ratio, index = horizontal.least(inside)
     upright, sideways = (None if part is None else part.least(inside) for part in (vertical, across))
     peak, wanted = float(np.mean([motion.peak for motion in motions])), action.surface_acceleration
@@ -269,14 +267,3 @@ def _correlation(step: float, a: FloatArray, other_step: float, b: FloatArray) -
     first, second = first[:length] - first[:length].mean(), second[:length] - second[:length].mean()
     size = math.sqrt(float(first @ first) * float(second @ second))
     return abs(float(first @ second)) / size if size > 0.0 else 0.0
-
-
-def _spectra(
-    motions: Sequence[GroundMotion], components: Sequence[FloatArray], periods: FloatArray
-) -> FloatArray:
-    return np.array(
-        [
-            response_spectrum(motion.step, component, periods).pseudo_acceleration_m_s2
-            for motion, component in zip(motions, components, strict=True)
-        ]
-    )

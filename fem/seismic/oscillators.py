@@ -17,8 +17,7 @@ from fem.records.spectrum import exact_recursion
 from fem.runtime.arrays import BoolArray, FloatArray
 from fem.seismic.action import DAMPING_RATIO
 
-#: of a period, at least: a peak midway between samples is 1 - cos(pi/16) = 1.9 % too low
-LEAST_SAMPLES = 16
+LEAST_SAMPLES = 16  #: of a period, at least: a peak midway between samples is 1 - cos(pi/16) = 1.9 % too low
 AT_ONCE = 4  #: steps for which the state of an oscillator is read and written once
 
 

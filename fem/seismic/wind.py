@@ -5,13 +5,11 @@ The wind acts along the width on a face of depth times height. Wind and earthqua
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from fem.seismic.body import LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow
+from fem.seismic.body import LooseBody, MethodQuantity, MethodRow
 
 AIR_DENSITY = 1.25  #: [kg/m3]
 STABILISING, DESTABILISING = 0.9, 1.5  #: of permanent weight and of wind, EN 1990, table A1.2(A), EQU
@@ -25,8 +23,7 @@ FORCE_COEFFICIENTS = (2.0, 2.0, 2.35, 2.4, 2.1, 1.65, 1.0, 0.9)
 ROUND_COEFFICIENT = 1.2
 #: end-effect factor of a solid face over the effective slenderness, EN 1991-1-4, figure 7.36
 SLENDERNESSES, END_EFFECTS = (1.0, 10.0, 70.0), (0.60, 0.698, 0.918)
-#: Germany: heights [m] up to which the simplified pressures hold
-GERMAN_HEIGHTS = (10.0, 18.0, 25.0)
+GERMAN_HEIGHTS = (10.0, 18.0, 25.0)  #: Germany: heights [m] up to which the simplified pressures hold
 #: (zone, place) -> pressures at those heights [Pa]
 GERMAN_PRESSURES = {
     (1, "inland"): (500.0, 650.0, 750.0),
@@ -99,22 +96,11 @@ def pressure_of(wind: Any, height: float) -> tuple[float, str]:
     return wind.peak_velocity_pressure_Pa or 0.0, "given"
 
 
-@dataclass(frozen=True, kw_only=True)
-class WindForce:
-    """The wind on a prism or an upright cylinder."""
-
-    coefficient: float  #: c_f
-    area: float  #: [m2]
-    pressure: float  #: q_p [Pa]
-
-    @property
-    def force(self) -> float:
-        """Characteristic, at mid height [N]."""
-        return self.coefficient * self.area * self.pressure
-
-
-def wind_force(body: LooseBody, pressure: float) -> WindForce:
+def wind_force(body: LooseBody, pressure: float) -> tuple[float, float, float]:
     """Wind along the width on a sharp-edged prism or an upright cylinder, EN 1991-1-4, 7.6 and 7.9, up to 15 m high.
+
+    Returns:
+        Force coefficient c_f, area of the face [m2], and the characteristic force at mid height [N].
 
     Raises:
         ValueError: higher than 15 m, where c_s c_d = 1 does not hold.
@@ -126,7 +112,8 @@ def wind_force(body: LooseBody, pressure: float) -> WindForce:
     if body.round:
         base = ROUND_COEFFICIENT
     end = np.interp(math.log(slenderness), np.log(SLENDERNESSES), END_EFFECTS)
-    return WindForce(coefficient=float(base * end), area=body.depth * body.height, pressure=pressure)
+    coefficient, area = float(base * end), body.depth * body.height
+    return coefficient, area, coefficient * area * pressure
 
 
 def wind_rows(body: LooseBody, pressure: float, *, gamma_mu: float = 1.0) -> list[MethodRow]:
@@ -136,21 +123,22 @@ def wind_rows(body: LooseBody, pressure: float, *, gamma_mu: float = 1.0) -> lis
         pressure: q_p [Pa].
         gamma_mu: partial factor on friction; the rule of equilibrium has none, 1.3 is usual for scaffolds.
     """
-    wind, half = wind_force(body, pressure), body.block.half_width
-    force, weight = DESTABILISING * wind.force, STABILISING * body.weight
-    put_in = f"1.5 × {wind.coefficient:.4g} × {pressure:.4g} × {wind.area:.4g}"
+    coefficient, area, characteristic = wind_force(body, pressure)
+    force, weight, half = DESTABILISING * characteristic, STABILISING * body.weight, body.block.half_width
+    put_in = f"1.5 × {coefficient:.4g} × {pressure:.4g} × {area:.4g}"
     edges = "a cylinder, the largest c_f,0" if body.round else "sharp edges"
     validity = f"{edges}, up to 15 m; characteristic wind; not combined with the earthquake"
+    moment, sliding = 0.5 * force * body.height, weight * body.mu_static / gamma_mu
     return [
         MethodRow(
             name="wind",
             quantity=MethodQuantity.OVERTURNING,
             formula="1.5 c_f q_p A H/2 ≤ 0.9 G b",
             numbers=f"{put_in} × {body.height:.4g} / 2 ≤ 0.9 × {body.weight:.5g} × {half:.4g}",
-            demand=0.5 * force * body.height,
+            demand=moment,
             capacity=weight * half,
             unit="N m",
-            says="stands" if 0.5 * force * body.height <= weight * half else "overturns",
+            says="stands" if moment <= weight * half else "overturns",
             source=SOURCE,
             validity=validity,
         ),
@@ -160,9 +148,9 @@ def wind_rows(body: LooseBody, pressure: float, *, gamma_mu: float = 1.0) -> lis
             formula="1.5 c_f q_p A ≤ 0.9 G μ_s/γ_μ",
             numbers=f"{put_in} ≤ 0.9 × {body.weight:.5g} × {body.mu_static:.4g} / {gamma_mu:g}",
             demand=force,
-            capacity=weight * body.mu_static / gamma_mu,
+            capacity=sliding,
             unit="N",
-            says="does not slide" if force <= weight * body.mu_static / gamma_mu else "slides",
+            says="does not slide" if force <= sliding else "slides",
             source=SOURCE,
             validity=f"{validity}; γ_μ = {gamma_mu:g} is this program's input, 1.3 is usual for scaffolds",
         ),

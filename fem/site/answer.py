@@ -53,8 +53,7 @@ FIGURES = 2  #: of what rocking makes of a motion; more would not be known
 SAYS = partial(text_of, "site_words.txt.j2")
 
 
-#: what speaks against "fulfilled": not fulfilled | not sure, and a sentence
-Reason = tuple[str, str]
+Reason = tuple[str, str]  #: what speaks against "fulfilled": not fulfilled | not sure, and a sentence
 
 
 def answer_of(

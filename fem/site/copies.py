@@ -13,7 +13,7 @@ from fem.results.kinds import ResultKind
 from fem.results.run_files import copy_data_files, require_free_name
 from fem.runtime.own_files import copy_file, place_in
 from fem.runtime.user_files import real_path
-from fem.seismic.floor_spectrum import text_of
+from fem.seismic.action import spectrum_text
 from fem.site.request import SiteRequest
 from fem.site.result import USUAL_BEHAVIOUR_FACTOR, SiteInputs
 
@@ -55,7 +55,7 @@ def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
     own = {"site.toml": _beside_its_files(request), CONTAINER: request.container.text}
     for table, name in request.point_files.items():
         require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
-    return own | {name: text_of(request.origin.folder / name) for name in request.point_files.values()}
+    return own | {name: spectrum_text(request.origin.folder / name) for name in request.point_files.values()}
 
 
 def copy_files(request: SiteRequest, folder: Path) -> None:

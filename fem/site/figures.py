@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from fem.figures import style
 from fem.runtime.arrays import FloatArray
-from fem.seismic.static_rules import floor_factor
+from fem.seismic.methods import floor_factor
 from fem.site import result
 from fem.site.size import SizePoint, SizeResult
 
@@ -16,8 +16,7 @@ LEAST_RATIO = 0.9  #: of the mean spectrum over the target, EN 1998-1:2004, 3.2.
 TICKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0)
 COLOURS = {"overturning": style.VERMILLION, "sliding": style.BLUE, "slip": style.GREEN}
 MARKERS = {"overturning": "o", "sliding": "s", "slip": "D"}
-#: factors that are drawn; beyond, an arrow
-FACTORS = (0.1, 10.0)
+FACTORS = (0.1, 10.0)  #: factors that are drawn; beyond, an arrow
 
 
 def draw_spectra(

@@ -11,8 +11,7 @@ from fem.case.validation import CaseError
 from fem.results.outcome import least_slide
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import SiteAction
-from fem.seismic.body import FloorAction, LooseBody
-from fem.seismic.method import MethodQuantity, MethodRow, length_in_words
+from fem.seismic.body import FloorAction, LooseBody, MethodQuantity, MethodRow, length_in_words
 from fem.seismic.methods import methods_of, rows_with_factors
 from fem.seismic.wind import wind_rows
 from fem.site.answer import destroyed

@@ -21,12 +21,10 @@ from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
 from fem.runtime.own_files import place_in
 from fem.runtime.user_files import leads_out, read_own, real_path
-from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, MotionTarget, SiteAction
+from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, FloorSpectrum, MotionTarget, SiteAction
 from fem.seismic.artificial import artificial_set
 from fem.seismic.floor import HIGHEST_HZ, ONE_MODE_TO_S, PERIOD_FACTORS, floor_motion, one_mode, storey_modes
-from fem.seismic.floor_spectrum import FloorSpectrum
-from fem.seismic.ground_motion import GroundMotion
-from fem.seismic.motion_files import write_at2, write_csv
+from fem.seismic.ground_motion import GroundMotion, write_at2, write_csv
 from fem.seismic.motion_set import SHORTEST_SHOWN_S, MotionSetCheck, periods_of_check
 from fem.site.request import SiteRequest
 from fem.site.result import (
@@ -40,8 +38,7 @@ from fem.site.result import (
 )
 from fem.site.tables import BuildingTable
 
-#: largest difference of two intervals of a record that is sampled evenly, over the interval
-UNEVEN = 1e-3
+UNEVEN = 1e-3  #: largest difference of two intervals of a record that is sampled evenly, over the interval
 COARSEST_S = 0.5 * SHORTEST_SHOWN_S  #: step that describes the shortest period of the check of a set
 RIGID_PERIOD_S = 0.01  #: of an oscillator that moves with its floor
 MATCHED = Processing(baseline="zero-end")  #: what matching does to a record besides

@@ -20,13 +20,17 @@ from fem.case.validation import CaseError
 from fem.runtime.user_files import leads_out, real_path
 from fem.seismic.action import (
     GERMAN_ZONES,
+    HORIZONTAL,
+    PERIOD,
+    VERTICAL,
+    FloorSpectrum,
     SiteAction,
     SpectrumShape,
     eurocode_shape,
     german_shape,
+    read_spectrum,
     second_generation_shape,
 )
-from fem.seismic.floor_spectrum import HORIZONTAL, PERIOD, VERTICAL, FloorSpectrum, read_spectrum
 from fem.seismic.wind import pressure_of
 from fem.site.tables import (
     BuildingTable,
@@ -64,8 +68,7 @@ WIDTH, DEPTH = "width", "depth"  #: elevations: the dimension along the motion; 
 #: contents for which gamma_a is at least that (EN 1998-1:2004, 4.3.5.3 (1))
 HAZARDOUS = ("toxic", "explosive")
 HAZARDOUS_FACTOR = 1.5
-#: a source that begins so states nothing
-PLACEHOLDERS = ("placeholder", "example")
+PLACEHOLDERS = ("placeholder", "example")  #: a source that begins so states nothing
 
 
 class SiteHeading(CaseTable):

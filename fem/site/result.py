@@ -53,8 +53,7 @@ class FloorResult(JsonBlock):
     building: str = ""  #: its modes, in words; of a given floor, what it was given by
     building_periods_s: tuple[float, ...] = ()  #: the one given, and varied both ways
     damping_ratio: float = 0.05  #: of the building
-    #: of the building's period with the largest mean peak; all are means over the motions
-    peak_m_s2: float
+    peak_m_s2: float  #: of the building's period with the largest mean peak; all are means over the motions
     peak_velocity_m_s: float
     mean_m_s2: tuple[float, ...]  #: spectrum (5 %) at the periods of the action
     #: of a given floor with a vertical motion, the same; else it is that of the ground

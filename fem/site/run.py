@@ -61,8 +61,7 @@ OF_A_MOTION = 75_000  #: numbers, in three files
 QUICK = (
     "Left out by --quick: further motions, other factors on the motions, the deciding runs with their bands."
 )
-#: stages
-FURTHER_ONES, OTHER_FACTORS = "further motions", "the set at other factors"
+FURTHER_ONES, OTHER_FACTORS = "further motions", "the set at other factors"  #: stages
 DECIDING = "the deciding runs with their bands"
 LOOSE = 0.55  #: cost of a run with the energy tolerance of draws, over one of the set
 TIMES_THE_SET = 20  #: runs of all stages over those of the set

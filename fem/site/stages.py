@@ -56,8 +56,7 @@ BETWEEN = 3
 REPETITIONS = (1.0 - 1e-4, 1.0 - 1e-5, 1.0 + 1e-6, 1.0 + 1e-5, 1.0 + 1e-4)
 #: processor time from which it tells the load of the machine [s], and the most that is believed
 LEAST_MEASURED_S, MOST_LOAD = 0.2, 10.0
-#: numbers of the artificial motions beyond the set begin behind those of any set
-FIRST_FURTHER = 10_000
+FIRST_FURTHER = 10_000  #: numbers of the artificial motions beyond the set begin behind those of any set
 FURTHER_PASSES = 15  #: in which those are matched: they are many, and nobody compares one with the target
 #: why the slip in two directions is not known
 ON_A_SLOPE = (

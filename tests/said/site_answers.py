@@ -10,7 +10,7 @@ from small_site import SITE
 
 from fem.case.validation import CaseError
 from fem.html.page import Page, html_of, text_of
-from fem.seismic.static_rules import peak_rows
+from fem.seismic.methods import peak_rows
 from fem.site.answer import answer_of
 from fem.site.methods import found_by_runs
 from fem.site.page import shown

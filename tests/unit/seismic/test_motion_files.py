@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem.records.files import read_record
-from fem.seismic.motion_files import in_whole_g, write_at2, write_csv
+from fem.seismic.ground_motion import in_whole_g, write_at2, write_csv
 
 GENERATOR = np.random.default_rng(7)
 VALUES = in_whole_g(

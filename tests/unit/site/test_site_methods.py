@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from running_example import ACTION, SITE, SLIP, k1
+from running_example import SITE
 from site_example import INPUTS, PERIODS, site_body, site_motion
 
-from fem.seismic.methods import methods_of
 from fem.site.methods import floor_action, loose_body, site_methods
 from fem.site.result import FloorResult
 
@@ -18,18 +17,6 @@ def rows_of(bodies, inputs, floor=None):
     return site_methods(
         bodies=bodies, inputs=inputs, site=SITE, motions=[motion], periods_s=periods, floor=floor, runs=[]
     )
-
-
-def test_rules_made_of_ground_motions_do_not_hold_on_a_floor_and_medians_are_marked():
-    methods = methods_of(k1(mu_static=0.2), SLIP, behaviour_factor=1.5)
-    on_ground, on_floor = (
-        [row for method in methods for row in method(replace(ACTION, in_building=floor))]
-        for floor in (False, True)
-    )
-    assert [row.name for row in on_ground if row.median] == ["Housner, spectral velocity"]
-    assert not any(row.beyond for row in on_ground)
-    out = {row.name for row in on_floor if row.beyond}
-    assert out == {"Housner, spectral velocity", "Newmark (1965)"}
 
 
 def test_a_body_keeps_its_inertia_and_has_the_least_friction():

@@ -10,7 +10,7 @@ from small_site import LEAST
 from fem.case.validation import CaseError
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.floor import floor_motion, storey_modes
-from fem.seismic.motion_files import in_whole_g, write_at2
+from fem.seismic.ground_motion import in_whole_g, write_at2
 from fem.seismic.motion_set import check_set
 from fem.site.motions import floor_motions, ground_motions, motion_target
 from fem.site.request import load_site

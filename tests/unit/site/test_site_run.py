@@ -8,7 +8,7 @@ import pytest
 from fem.__main__ import main
 from fem.records.files import read_record
 from fem.seismic.artificial import artificial_motions
-from fem.seismic.motion_files import write_at2, write_csv
+from fem.seismic.ground_motion import write_at2, write_csv
 from fem.site.motions import ground_motions
 from fem.site.request import load_site
 from fem.site.run import run_site
