@@ -45,10 +45,7 @@ def check(
         files = importlib.import_module("fem.site.request")
         previews = importlib.import_module("fem.site.preview")
         request = files.load_site(case, allow_baseline=allow_baseline)
-        outlook = previews.preview_of(request, allow_outside=allow_outside)
-        text_of = importlib.import_module("fem.html.page").text_of
-        page = "" if as_json else text_of("preview.txt.j2", preview=outlook, request=request)
-        say(page or json.dumps(outlook.to_json(), indent=2))
+        say(previews.preview_of(request, allow_outside=allow_outside, as_json=as_json))
         return
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline

@@ -298,5 +298,5 @@ def size(
     """Find the least width, the tallest stack, the window of friction or the strongest action that fulfils the rule."""
     request = _of("site.request:load_site")(site)
     axis = _of("site.size:size_axis")(request, over, low=low, high=high, count=count)
-    name, compute = f"{request.name}_size", "site.size_run:run_size"
+    name, compute = f"{request.name}_size", "site.size:run_size"
     return _ended(SIZE, name, flags, compute, request, axis, allow_outside=allow_outside)

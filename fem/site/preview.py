@@ -1,5 +1,6 @@
 """What can be said of a site before any run: action, motions, what they move, and what a verification would take."""
 
+import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,6 @@ from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.site.motions import GIVEN_FLOORS
 from fem.site.request import SiteRequest
-from fem.site.result import SiteBody
 from fem.site.runs import CONFIRMING, MOST_DECIDING, still
 from fem.site.stages import Stages
 
@@ -62,47 +62,31 @@ def forecast(stages: Stages, jobs: int, *, scan: bool = True) -> Forecast:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class SitePreview(JsonBlock):
-    """What is known of a verification before it is computed."""
-
-    site: str
-    title: str
-    spectrum: str
-    ag_S_m_s2: float
-    avg_m_s2: float
-    bodies: tuple[SiteBody, ...]
-    floor: str | None  #: what it is given by; None: the site moves it, perhaps through a building
-    motions: int
-    set_valid: bool
-    reasons: tuple[str, ...]
-    notes: tuple[str, ...]  #: what the processing of the records changed
-    factor_at_first_movement: float | None  #: on the motions, of a rigid body; None: not known
-    wind_utilisation: float | None
-    forecast: Forecast
-
-
-def preview_of(request: SiteRequest, *, allow_outside: bool = False) -> SitePreview:
-    """What is known of a request; nothing is computed but its motions.
+def preview_of(request: SiteRequest, *, allow_outside: bool = False, as_json: bool = False) -> str:
+    """What is known of a request, in words or as JSON; nothing is computed but its motions.
 
     Raises:
         CaseError, MeshError: it cannot be computed.
     """
     stages = Stages.of(request, Path(), allow_outside=allow_outside)
-    checked = stages.checked
-    return SitePreview(
-        site=request.name,
-        title=request.heading.title,
-        spectrum=request.action.shape.source,
-        ag_S_m_s2=request.action.surface_acceleration,
-        avg_m_s2=request.action.vertical_acceleration,
-        bodies=stages.bodies,
-        floor=GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
-        motions=len(stages.ground),
-        set_valid=checked.valid,
-        reasons=checked.reasons,
-        notes=tuple(dict.fromkeys(note for motion in stages.ground for note in motion.notes)),
-        factor_at_first_movement=stages.first_movement,
-        wind_utilisation=stages.wind,
-        forecast=forecast(stages, cores()),
-    )
+    bodies, expected = stages.bodies, forecast(stages, cores())
+    known = {
+        "site": request.name,
+        "title": request.heading.title,
+        "spectrum": request.action.shape.source,
+        "ag_S_m_s2": request.action.surface_acceleration,
+        "avg_m_s2": request.action.vertical_acceleration,
+        "bodies": [body.to_json() for body in bodies] if as_json else bodies,
+        # what it is given by; None: the site moves it, perhaps through a building
+        "floor": GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
+        "motions": len(stages.ground),
+        "set_valid": stages.checked.valid,
+        "reasons": stages.checked.reasons,
+        "notes": list(dict.fromkeys(note for motion in stages.ground for note in motion.notes)),
+        "factor_at_first_movement": stages.first_movement,
+        "wind_utilisation": stages.wind,
+        "forecast": expected.to_json() if as_json else expected,
+    }
+    if as_json:
+        return json.dumps(known, indent=2)
+    return text_of("preview.txt.j2", preview=known, request=request)

@@ -32,6 +32,7 @@ from fem.seismic.action import (
     second_generation_shape,
 )
 from fem.seismic.wind import pressure_of
+from fem.site.result import USUAL_BEHAVIOUR_FACTOR, SiteInputs
 from fem.site.tables import (
     BuildingTable,
     FloorSpectrumTable,
@@ -231,6 +232,27 @@ class SiteRequest:
             return pressure_of(wind, self.container.container.total_height)
         except ValueError as error:
             raise CaseError(f"[wind] {error}") from None
+
+    @cached_property
+    def inputs(self) -> SiteInputs:
+        """What is asked, for the page and the simplified methods."""
+        wind, static = self.wind_pressure, self.container.static
+        return SiteInputs(
+            container=self.heading.container,
+            mu_static=tuple(self.friction.mu_static),
+            mu_kinetic_over_static=tuple(self.friction.mu_kinetic_over_static),
+            rotation_ratio_limit=self.limits.rotation_ratio,
+            single_rotation_ratio_limit=self.limits.single_rotation_ratio,
+            slip_limit_m=self.limits.slip_m,
+            wind_pressure_Pa=wind[0] if wind else None,
+            wind_pressure_source=wind[1] if wind else "",
+            gamma_mu=self.wind.gamma_mu if self.wind else 1.0,
+            behaviour_factor=static.behaviour_factor if static else USUAL_BEHAVIOUR_FACTOR,
+            model=self.heading.model,
+            contents=self.heading.contents or "",
+            sources=tuple(self.sources_in_use.items()),
+            unstated=self.unstated,
+        )
 
     def with_value(self, key: str, value: float | int) -> "SiteRequest":
         """This request with one dotted key changed: of the site file, or of its container.

@@ -3,8 +3,9 @@
 Every field has the name of its key in the file, with its SI unit. Accelerations are magnitudes.
 """
 
-from dataclasses import dataclass
-from typing import Annotated
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Annotated, Any, ClassVar
 
 from fem.html.page import Signature
 from fem.results import figures
@@ -182,8 +183,11 @@ class SiteRun(figures.RunFigures, RunKey):
 
 @dataclass(frozen=True, kw_only=True)
 class ByRule(JsonBlock):
-    """What counts by the rule; None where a run overturned or failed."""
+    """What counts of some runs by the rule; None where one overturned or failed."""
 
+    runs: int
+    overturned: int
+    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
     #: of seven and more motions the mean, of fewer the largest
     rotation_ratio: Annotated[float | None, figures.Shown("rotation ratio, by the rule", RATIO)] = None
     #: of a single motion
@@ -200,11 +204,7 @@ FIGURE_OF = {
     "single_rotation_ratio": "rotation_ratio_largest",
     "slip_m": "slip_m",
 }
-FOUND_FROM = {
-    "rotation_ratio": figures.TURNED,
-    "single_rotation_ratio": figures.TURNED,
-    "slip_m": figures.SLIPPED,
-}
+FOUND_FROM = {key: figures.SLIPPED if key == "slip_m" else figures.TURNED for key in FIGURE_OF}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -223,11 +223,13 @@ class RuleRange(JsonBlock):
 class ScanPoint(ByRule):
     """What the rule finds in all motions of the set times one factor; no figure where a run of a group has none."""
 
-    factor: float
-    runs: int
-    overturned: int
-    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
+    factor: float = 1.0
     failed: int = 0  #: runs without an outcome, of which the margin knows nothing
+
+    @property
+    def not_standing(self) -> int:
+        """Runs that overturned or destroyed a corner."""
+        return self.overturned + self.invalid
 
     def exceeded(self, limits: LimitsTable) -> list[str]:
         """The limits that are exceeded, by their keys; where a run overturned none is known to be kept."""
@@ -235,7 +237,7 @@ class ScanPoint(ByRule):
 
     def fails(self, limits: LimitsTable) -> bool:
         """Whether the rule is not fulfilled."""
-        return self.overturned + self.invalid > 0 or bool(self.exceeded(limits))
+        return self.not_standing > 0 or bool(self.exceeded(limits))
 
     def utilisation(self, limits: LimitsTable) -> float | None:
         """The largest share of a limit; None where a run overturned or failed."""
@@ -318,9 +320,6 @@ class SiteAnswer(ByRule):
     reasons: tuple[str, ...] = ()  #: why it is not fulfilled, or not sure: sentences, the gravest first
     rule: str
     sentence: str
-    overturned: int
-    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
-    runs: int
     still: int = 0  #: runs below uplift and slip by the rigid bound, which were not computed
     exceeded: tuple[str, ...] = ()  #: keys of the limits that the set exceeds
     governing: SiteRun | None = None
@@ -341,6 +340,31 @@ class SiteAnswer(ByRule):
     def is_least_tried(self, factor: float) -> bool:
         """Whether no smaller factor on the motions was tried: what happens at it may happen below it, too."""
         return bool(self.scan) and factor <= min(point.factor for point in self.scan)
+
+
+#: columns of the points of `size`: the answer at a value, and why it is not fulfilled, in words
+SAME = ("answer", "fulfilled", *(field.name for field in fields(ByRule)))
+POINT = {"value": float, "fails": str} | {name: figures.types_of(SiteAnswer)[name] for name in SAME}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeResult(StudyResult):
+    """Which values fulfil the rule: what `size.json` holds."""
+
+    command: str = ""
+    wall_s: float | None = None
+    key: str
+    followers: tuple[str, ...] = ()  #: keys that took the same values
+    unit: str
+    low: float  #: ends of the range that was tried
+    high: float
+    #: the least or the largest; None where there is none in the range, or a window is asked
+    value: float | None = None
+    intervals: tuple[tuple[float, ...], ...] = ()  #: that fulfil it, by their outermost values tried
+    sentence: str = ""
+    columns_of: ClassVar[Mapping[str, Mapping[str, Any]]] = {"points": POINT}
+    needed = frozenset({"value", "runs", "overturned"})
+    points: tuple[Mapping[str, Any], ...] = ()  #: by rising value
 
 
 @dataclass(frozen=True, kw_only=True)

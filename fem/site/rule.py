@@ -7,8 +7,9 @@ overturning means not fulfilled, and no single motion may turn the container fur
 silent there, so these are the rules of this program.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import groupby
 from typing import Any
@@ -25,7 +26,6 @@ from fem.site.result import (
     REPEATED,
     SCAN,
     SET,
-    ByRule,
     FurtherMotions,
     RuleRange,
     RunKey,
@@ -39,7 +39,6 @@ MEAN_FROM = 7  #: motions from which the mean counts
 CONFIDENCE = 0.95
 #: largest slip [m] under both horizontal components, by motion, period of the building and friction
 MotionSlips = Mapping[tuple[int, float | None, float, float], float]
-RANGED = tuple(FIGURE_OF.values())  #: of the rule, of which the range is given
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,38 +59,32 @@ class RunGroup:
         return [(motion, list(runs)) for motion, runs in groupby(ordered, lambda run: run.motion)]
 
     @property
-    def motions(self) -> int:
-        """How many motions."""
-        return len({run.motion for run in self.runs})
-
-    @property
     def rests(self) -> bool:
         """Whether nothing moves in any of its runs."""
         return all(run.outcome == Outcome.REST for run in self.runs)
 
-    @property
-    def overturned(self) -> int:
-        """Runs that overturned."""
-        return sum(run.outcome == Outcome.OVERTURNED for run in self.runs)
-
-    @property
-    def failed(self) -> int:
-        """Runs without an outcome."""
-        return sum(run.outcome is None for run in self.runs)
-
-    @property
-    def invalid(self) -> int:
-        """Runs that destroyed a corner: they do not count as standing, and have no figures."""
-        return sum(run.outcome == Outcome.INVALID for run in self.runs)
-
     @cached_property
-    def by_rule(self) -> ByRule:
-        """What counts."""
-        rotations, slips = self._worst(TURNED), self._worst(SLIPPED)
-        if rotations is None or slips is None:
-            return ByRule()
+    def by_rule(self) -> ScanPoint:
+        """What counts: of each motion the worse sign; no figure where a run has none."""
+        ends = Counter(run.outcome for run in self.runs)
+        found = ScanPoint(
+            runs=len(self.runs),
+            overturned=ends[Outcome.OVERTURNED],
+            invalid=ends[Outcome.INVALID],
+            failed=ends[None],
+        )
+        if found.overturned or found.invalid or found.failed:
+            return found
+        worst: dict[str, dict[int, float]] = {TURNED: {}, SLIPPED: {}}
+        for figure, of_motions in worst.items():
+            for run in self.runs:
+                if run[figure] is None:
+                    return found
+                of_motions[run.motion] = max(of_motions.get(run.motion, 0.0), run[figure])
+        rotations, slips = ([*of_motions.values()] for of_motions in worst.values())
         mean = sum(rotations) / len(rotations)
-        return ByRule(
+        return replace(
+            found,
             rotation_ratio=mean if len(rotations) >= MEAN_FROM else max(rotations),
             rotation_ratio_largest=max(rotations),
             slip_m=max(slips),
@@ -106,29 +99,16 @@ class RunGroup:
             if run.outcome in ENDINGS or any((run[figure] or 0.0) > limit for figure, limit in limits.items())
         }
 
-    def _worst(self, figure: str) -> list[float] | None:
-        """Of each motion the worse sign; None where a run has no such figure."""
-        if self.overturned or self.invalid or self.failed:
-            return None
-        worst: dict[int, float] = {}
-        for run in self.runs:
-            if run[figure] is None:
-                return None
-            worst[run.motion] = max(worst.get(run.motion, 0.0), run[figure])
-        return list(worst.values())
-
 
 def rule_of(groups: Sequence[RunGroup], factor: float = 1.0) -> ScanPoint:
     """What the rule finds in the runs of some groups, at a factor on the motions: the largest over the groups."""
     figures = {name: [group.by_rule[name] for group in groups] for name in BY_RULE}
-    return ScanPoint(
-        factor=factor,
-        runs=sum(len(group.runs) for group in groups),
-        overturned=sum(group.overturned for group in groups),
-        invalid=sum(group.invalid for group in groups),
-        failed=sum(group.failed for group in groups),
-        **{name: None if None in row else max(row, default=None) for name, row in figures.items()},
-    )
+    found: dict[str, Any] = {
+        name: None if None in row else max(row, default=None) for name, row in figures.items()
+    }
+    for name in ("runs", "overturned", "invalid", "failed"):
+        found[name] = sum(group.by_rule[name] for group in groups)
+    return ScanPoint(factor=factor, **found)
 
 
 def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
@@ -143,15 +123,15 @@ def governing_groups(groups: Sequence[RunGroup]) -> list[RunGroup]:
     """Of each weight the group that governs rotation and the one that governs slip, in the order of the groups."""
 
     def rotation(group: RunGroup) -> tuple[int, float]:
-        return group.overturned + group.invalid, max(run.turned for run in group.runs)
+        return group.by_rule.not_standing, max(run.turned for run in group.runs)
 
     def slip(group: RunGroup) -> float:
         return max(run.slipped for run in group.runs if run.outcome not in ENDINGS)
 
     chosen: set[int] = set()
     for mass in dict.fromkeys(group.first.mass for group in groups):
-        own = [group for group in groups if group.first.mass == mass and not group.failed]
-        standing = [group for group in own if group.overturned + group.invalid < len(group.runs)]
+        own = [group for group in groups if group.first.mass == mass and not group.by_rule.failed]
+        standing = [group for group in own if group.by_rule.not_standing < len(group.runs)]
         chosen |= {id(max(pool, key=key)) for pool, key in ((own, rotation), (standing, slip)) if pool}
     return [group for group in groups if id(group) in chosen]
 
@@ -162,17 +142,15 @@ def governing_run(limits: LimitsTable, runs: Sequence[SiteRun]) -> SiteRun | Non
     if fell:
         counts = {id(run): sum(len(groups_of((run, other))) == 1 for other in fell) for run in fell}
         return max(fell, key=lambda run: counts[id(run)])
-    known = [group for group in groups_of(runs) if not group.failed]
-    if not known:
+    uses = [
+        ((group.by_rule[name] or 0.0) / getattr(limits, key), FOUND_FROM[key], group)
+        for group in groups_of(runs)
+        if not group.by_rule.failed
+        for key, name in FIGURE_OF.items()
+    ]
+    if not uses:
         return None
-    _, figure, group = max(
-        (
-            ((group.by_rule[name] or 0.0) / getattr(limits, key), FOUND_FROM[key], group)
-            for group in known
-            for key, name in FIGURE_OF.items()
-        ),
-        key=lambda use: use[0],
-    )
+    _, figure, group = max(uses, key=lambda use: use[0])
     return max(group.runs, key=lambda run: run[figure] or 0.0)
 
 
@@ -198,15 +176,11 @@ def rule_range(groups: Sequence[RunGroup], runs: Mapping[RunKey, SiteRun]) -> tu
         repeated = {group.first.group: group for group in groups_of(rerun)}
         tallies.append(rule_of([repeated.get(group.first.group, group) for group in groups]))
     ranges = {}
-    for name in RANGED:
+    for name in FIGURE_OF.values():
         known = [tally[name] for tally in tallies if tally[name] is not None]
         ranges[name] = (min(known), max(known)) if known else ()
-    repetitions = tallies[1:]
-    span = RuleRange(
-        **ranges,
-        repetitions=len(repetitions),
-        overturned=sum(repetition.overturned + repetition.invalid > 0 for repetition in repetitions),
-    )
+    fell = sum(repetition.not_standing > 0 for repetition in tallies[1:])
+    span = RuleRange(**ranges, repetitions=len(again), overturned=fell)
     return span, sum(run.outcome is None for rerun in again.values() for run in rerun)
 
 
@@ -220,28 +194,24 @@ def further_motions(
     """
     counted = []
     for group in groups_of(run for key, run in runs.items() if key.stage == FURTHER):
-        failed = {run.motion for run in group.runs if run.outcome is None}
+        failed, first = {run.motion for run in group.runs if run.outcome is None}, group.first
         known = RunGroup(runs=tuple(run for run in group.runs if run.motion not in failed))
-        fell = len(known.beyond({}))
-        first = group.first
+        motions, fell = {run.motion for run in known.runs}, len(known.beyond({}))
+        ends = Counter(outcome for outcome, _ in {(run.outcome, run.motion) for run in known.runs})
         pair = first.building_period_s, first.mu_static, first.mu_kinetic
-        slid = {
-            motion: slips[motion, *pair]
-            for motion in {run.motion for run in known.runs}
-            if (motion, *pair) in slips
-        }
+        slid = {motion: slips[motion, *pair] for motion in motions if (motion, *pair) in slips}
         beyond = known.beyond({TURNED: limits.single_rotation_ratio, SLIPPED: limits.slip_m})
         too_far = {motion for motion, slip in slid.items() if slip > limits.slip_m}
         counted.append(
             FurtherMotions(
                 **{field.name: first[field.name] for field in fields(SiteKey)},
-                motions=known.motions,
-                overturned=len({run.motion for run in known.runs if run.outcome == Outcome.OVERTURNED}),
-                invalid=len({run.motion for run in known.runs if run.outcome == Outcome.INVALID}),
+                motions=len(motions),
+                overturned=ends[Outcome.OVERTURNED],
+                invalid=ends[Outcome.INVALID],
                 beyond_limits=len(beyond | too_far),
                 slip_largest_m=max(slid.values(), default=None),
                 slid_too_far=len(too_far),
-                interval=binomial_interval(fell, known.motions, CONFIDENCE) if known.motions else (),
+                interval=binomial_interval(fell, len(motions), CONFIDENCE) if motions else (),
                 failed=len(failed),
             )
         )
@@ -256,7 +226,7 @@ def margin_factor(limits: LimitsTable, runs: Mapping[RunKey, SiteRun]) -> float 
     def fails(factor: float) -> bool:
         # Between factors some runs of a group may be there alone: they have no mean.
         return any(
-            group.overturned + group.invalid or (len(group.runs) == whole and rule_of([group]).fails(limits))
+            group.by_rule.not_standing or (len(group.runs) == whole and group.by_rule.fails(limits))
             for group in groups_of(by_factor[factor])
         )
 

@@ -7,25 +7,33 @@ neither on that nor on the number of cores.
 import hashlib
 import platform
 import time
+import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
+from itertools import chain
+from pathlib import Path, PurePath
 from typing import Unpack
 
-from fem.case.case import Case, case_hash
+from fem.case.case import Case, CaseError, case_hash
+from fem.case.data_files import place_of, split_channel
+from fem.case.toml import toml_document, toml_value
 from fem.html.page import Signature
 from fem.results.disk import table_bytes
 from fem.results.figures import SLIPPED, TURNED, Place
 from fem.results.folder import ResultFolder
-from fem.results.kinds import SITE
+from fem.results.kinds import SITE, ResultKind
 from fem.results.outcome import ENDINGS
+from fem.results.run_files import copy_data_files, require_free_name
 from fem.results.run_result import Band
 from fem.run.ranges import largest_bolt_forces
 from fem.runtime.identity import command_line, versions
+from fem.runtime.own_files import copy_file, place_in
+from fem.runtime.user_files import real_path
+from fem.seismic.action import spectrum_text
 from fem.seismic.ground_motion import GroundMotion
 from fem.site.answer import FULFILLED, NOT_FULFILLED, answer_of, no_answer_yet
-from fem.site.copies import copy_files, inputs_of, left_elsewhere, texts_of
 from fem.site.methods import site_methods
 from fem.site.motions import (
     action_result,
@@ -61,8 +69,13 @@ OF_A_MOTION = 75_000  #: numbers, in three files
 QUICK = (
     "Left out by --quick: further motions, other factors on the motions, the deciding runs with their bands."
 )
-FURTHER_ONES, OTHER_FACTORS = "further motions", "the set at other factors"  #: stages
+FURTHER_ONES, OTHER_FACTORS = "further motions", "the set at other factors"
 DECIDING = "the deciding runs with their bands"
+CONTAINER, RECORDS = (
+    "container.toml",
+    "records",
+)  #: a file, and a folder of the records that the site file names
+MOST_COPIED = 20_000_000  #: of a record [bytes]; a larger one stays where it is
 LOOSE = 0.55  #: cost of a run with the energy tolerance of draws, over one of the set
 TIMES_THE_SET = 20  #: runs of all stages over those of the set
 
@@ -132,8 +145,8 @@ def _compute(stages: Stages, place: ResultFolder, runner: Runner) -> SiteResult:
     place.check()
     result = _result(stages, motions, answer)
     if result.status == COMPLETED:
-        if stages.rows.runs:
-            place.write(RUNS, stages.rows.table())
+        if stages.runs:
+            place.write(RUNS, stages.table())
         place.write(PAGE, site_report(place.path, result))
     return result
 
@@ -159,7 +172,7 @@ def answered(
         value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
             without what comes after the first that speaks against it.
     """
-    rows, request = stages.rows, stages.request
+    request = stages.request
     again: list[ConfirmedRun] = []
     left_out = QUICK if stages.quick and not stages.rests else ""
     varied = {} if value is None else {"value": float}
@@ -167,7 +180,7 @@ def answered(
 
     def now() -> SiteAnswer:
         beside = stages.beside()
-        return answer_of(request, motions, rows.in_order(), confirmed=again, left_out=left_out, **beside)
+        return answer_of(request, motions, stages.in_order(), confirmed=again, left_out=left_out, **beside)
 
     names = ["the set", "its repetitions"] + [FURTHER_ONES] * stages.has_further
     scans = not (stages.quick or varied)
@@ -196,7 +209,7 @@ def answered(
     def note(line: str) -> None:
         row = row_of(columns, line)
         row.pop("value", None)
-        rows.add(row)
+        stages.add(row)
 
     if motions.valid:
         cases = cases_of(request, stages.folder)
@@ -213,11 +226,9 @@ def answered(
             told=begin,
         ).run(runner, batches())
         if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
-            runs, own = rows.in_order(), rows.of(stages.of_set())
-            keys = [
-                key for key in deciding(runs, governing_run(request.limits, own)) if key not in rows.still
-            ]
-            if keys:
+            runs, own = stages.in_order(), stages.found(stages.of_set())
+            governing = governing_run(request.limits, own)
+            if keys := [key for key in deciding(runs, governing) if key not in stages.still]:
                 expected = forecast(stages, runner.jobs).deciding_seconds
                 told.begin(DECIDING, len(keys), seconds=stages.load * expected)
                 again = confirmed(cases, runs, keys, runner.jobs)
@@ -226,15 +237,15 @@ def answered(
 
 def _result(stages: Stages, motions: MotionSet, answer: SiteAnswer | None) -> SiteResult:
     """Everything that was found; without an answer what there is, and what is missing."""
-    request, inputs, rows = stages.request, inputs_of(stages.request), stages.rows
-    wanted, missing = stages.of_set(), None
-    own = rows.of(wanted)
+    request, missing = stages.request, None
+    wanted = stages.of_set()
+    own = stages.found(wanted)
     if answer is None:
         missing = (
             "repetitions, further motions, other factors on the motions or the deciding runs are missing"
         )
-        if left := len(rows.missing(wanted)):
-            missing = f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
+        if len(own) < len(wanted):
+            missing = f"{len(own)} of {len(wanted)} runs of the set are computed"
     action = action_result(request.action, stages.checked)
     floor = floor_result(request, stages.floors, stages.checked)
     document = request.document.model_dump(exclude_none=True) if request.document else None
@@ -243,16 +254,16 @@ def _result(stages: Stages, motions: MotionSet, answer: SiteAnswer | None) -> Si
         answer=answer.sentence if answer else None,
         missing=missing,
         title=request.heading.title,
-        inputs=inputs,
+        inputs=request.inputs,
         action=action,
         floor=floor,
         set=motions,
         bodies=stages.bodies,
-        runs=tuple(rows.in_order().values()),
+        runs=tuple(stages.in_order().values()),
         result=answer or no_answer_yet(request.limits, motions, own, missing or ""),
         methods=site_methods(
             bodies=stages.bodies,
-            inputs=inputs,
+            inputs=request.inputs,
             site=request.action,
             motions=motions.motions,
             periods_s=action.periods_s,
@@ -320,3 +331,74 @@ def confirmed(
             )
         )
     return results
+
+
+def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
+    """The site file, its container, and the files of points that it names, by their names in a folder of results.
+
+    The site file names what lies beside it there, so that it can be repeated from there alone.
+
+    Raises:
+        CaseError: a file of points is named like a result, which would replace it.
+        ValueError: it cannot be read.
+    """
+    own = {"site.toml": _beside_its_files(request), CONTAINER: request.container.text}
+    for table, name in request.point_files.items():
+        require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
+    return own | {name: spectrum_text(request.origin.folder / name) for name in request.point_files.values()}
+
+
+def copy_files(request: SiteRequest, folder: Path) -> None:
+    """Copy the mesh of the container, and the records, to where the copies of their files name them."""
+    for path, place in _records(request).values():
+        if not Path(place).is_absolute():
+            target = place_in(folder, place)
+            if real_path(target) != real_path(path):
+                copy_file(path, target)
+    with suppress(CaseError):  # the motion of the container, which is not used here, may be none
+        copy_data_files(request.container, folder)
+
+
+def left_elsewhere(request: SiteRequest) -> list[str]:
+    """The records that are too large to be copied, in a sentence each with what tells their content."""
+    return [
+        f"{place} is larger than {MOST_COPIED / 1e6:g} MB and is not copied into the results; SHA-256 "
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}; to repeat it from there needs --allow-outside"
+        for path, place in dict.fromkeys(_records(request).values())
+        if Path(place).is_absolute()
+    ]
+
+
+def _records(request: SiteRequest) -> dict[str, tuple[Path, str]]:
+    """The records by their names in the site file: where each is, and its place in the results; if large, on disk."""
+    places: dict[str, tuple[Path, str]] = {}
+    taken: dict[str, Path] = {}
+    for name in chain(*(request.motions.files or [])):
+        path, _ = split_channel(request.origin.folder, name)
+        if path.stat().st_size > MOST_COPIED:
+            places[name] = path, str(real_path(path))
+            continue
+        own = path.name
+        while taken.setdefault(own, path) != path:  # of another folder
+            own = f"other-{own}"
+        places[name] = path, f"{RECORDS}/{own}"
+    return places
+
+
+def _beside_its_files(request: SiteRequest) -> str:
+    """The site file with the names of the copies beside it; with its comments, where these names alone change."""
+    names = {request.heading.container: CONTAINER}
+    wanted = {**request.data, "container": CONTAINER}
+    if request.motions.files:
+        for name, (_, place) in _records(request).items():
+            channel = split_channel(request.origin.folder, name)[1]
+            names[name] = f"{place}#{channel}" if channel else place
+        files = [[names[name] for name in motion] for motion in request.motions.files]
+        wanted["motions"] = {**request.data["motions"], "files": files}
+    text = request.origin.text
+    for name, own in names.items():
+        text = text.replace(toml_value(name), toml_value(own)).replace(f"'{name}'", toml_value(own))
+    with suppress(tomllib.TOMLDecodeError):
+        if tomllib.loads(text) == wanted:
+            return text
+    return toml_document(wanted)

@@ -1,28 +1,33 @@
-"""The runs of a verification: the case of each, and their rows."""
+"""The runs of a verification: the case of each, the columns of its row; and its containers as bodies.
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+A rigid body that neither uplifts nor slips under the whole motion need not be computed: the bound is that of
+`fem.model.resting`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from fem.case.case import Case, read_case
+from fem.case.case import Case, CaseError, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.toml import toml_document
+from fem.model.geometry import build_container
+from fem.model.resting import BodyAtRest
+from fem.model.static_checks import static_checks_of
 from fem.results.figures import Place, columns_of, types_of
-from fem.results.outcome import Outcome
 from fem.run.changed_runs import tolerance_of_draws
-from fem.site.request import FULL, WIDTH, SiteRequest
-from fem.site.result import MOTIONS, REPEATED, SET, STAGES, RunKey, SiteRun
+from fem.site.request import EMPTY, SiteRequest
+from fem.site.result import MOTIONS, REPEATED, SET, RunKey, SiteBody, SiteRun
 from fem.study.design import CaseMaker
 from fem.study.runner import Row
-from fem.study.table import table_text
 
-CONFIRMING = (
-    "reduced"  #: model with which the deciding runs are repeated, and how many of them there are at most
-)
-MOST_DECIDING = 2
+CONFIRMING, MOST_DECIDING = (
+    "reduced",
+    2,
+)  #: model with which the deciding runs are repeated, and how many at most
 NOT_COMPUTED = "below uplift and slip of a rigid body: not computed"
 #: the columns that tell which run a row is of
 KEYS = (
@@ -48,8 +53,9 @@ def cases_of(request: SiteRequest, folder: Path) -> Callable[[RunKey], Case]:
 
     That raises CaseError where the motion is missing.
     """
-    bases = {name: still(case, request.heading.model) for name, case in request.variants.items()}
-    return partial(_case, folder.resolve() / MOTIONS, {name: CaseMaker(base) for name, base in bases.items()})
+    model = request.heading.model
+    makers = {name: CaseMaker(still(case, model)) for name, case in request.variants.items()}
+    return partial(_case, folder.resolve() / MOTIONS, makers)
 
 
 def _case(place: Path, makers: Mapping[tuple[str, str], CaseMaker], key: RunKey) -> Case:
@@ -90,45 +96,54 @@ def still(case: Case, model: str) -> Case:
     )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RunRows:
-    """The rows of the runs so far."""
-
-    runs: dict[RunKey, SiteRun] = field(default_factory=dict)
-    rows: dict[RunKey, Row] = field(default_factory=dict)  #: of the log
-    still: set[RunKey] = field(default_factory=set)  #: those at rest that were not computed
-
-    def add(self, row: Row) -> None:
-        """Add the row of a run."""
-        key = key_of(row)
-        self.runs[key] = SiteRun(**vars(key), **{name: row[name] for name in FOUND})
-        self.rows[key] = row
-
-    def rest(self, key: RunKey) -> None:
-        """Add a run that is at rest and was not computed."""
-        self.still.add(key)
-        cells = dict(zip(KEYS, cells_of(key), strict=True))
-        self.add(cells | dict.fromkeys(FOUND, 0.0) | {"outcome": Outcome.REST, "reason": NOT_COMPUTED})
-
-    def in_order(self) -> dict[RunKey, SiteRun]:
-        """All of them, stage by stage: not in the order in which they were ready, which depends on the cores."""
-        return dict(sorted(self.runs.items(), key=lambda pair: _place(pair[0])))
-
-    def table(self) -> str:
-        """`runs.csv`: a row a run, in the same order."""
-        return table_text(COLUMNS, (self.rows[key].values() for key in self.in_order()))
-
-    def missing(self, keys: Iterable[RunKey]) -> list[RunKey]:
-        """Those that have no row."""
-        return [key for key in keys if key not in self.runs]
-
-    def of(self, keys: Sequence[RunKey]) -> list[SiteRun]:
-        """The runs of these keys, in their order, as far as they are there."""
-        return [self.runs[key] for key in keys if key in self.runs]
+def bodies_of(request: SiteRequest) -> tuple[SiteBody, ...]:
+    """Every container that is run; raises as `body_of`."""
+    return tuple(body_of(*name, case) for name, case in request.variants.items())
 
 
-def _place(key: RunKey) -> tuple[Any, ...]:
-    """What runs are sorted by."""
-    stage = STAGES.index(key.stage)
-    container = key.mass != FULL, key.elevation != WIDTH, key.building_period_s or 0.0
-    return stage, key.factor, *container, key.mu_static, key.mu_kinetic, key.motion, -key.vertical_sign
+def body_of(mass: str, elevation: str, case: Case) -> SiteBody:
+    """Mass, dimensions and rocking parameters of a container.
+
+    Raises:
+        CaseError, MeshError: it cannot be built.
+    """
+    try:
+        mesh = build_container(case)
+    except ValueError as error:
+        if mass == EMPTY:
+            raise CaseError(f"empty_mass_kg: {error}") from None
+        raise
+    static = static_checks_of(case, mesh, 0.0)
+    return SiteBody(
+        mass=mass,
+        elevation=elevation,
+        mass_kg=mesh.mass,
+        centroid_m=static.centroid,
+        inertia_kg_m2=static.inertia,
+        support_width_m=static.width,
+        width_m=case.container.width_m,
+        height_m=case.container.total_height,
+        depth_m=case.container.depth_m,
+        gravity_m_s2=case.gravity_m_s2,
+        slenderness_angle_rad=static.slenderness_angle,
+        frequency_parameter_1_s=static.frequency_parameter,
+        uplift_acceleration_m_s2=static.uplift_acceleration,
+        housner_restitution=static.housner_restitution,
+    )
+
+
+def at_rest_by_the_bound(request: SiteRequest) -> dict[tuple[str, str], BodyAtRest]:
+    """The rigid bodies that a bound may show to be at rest, by weight and elevation.
+
+    None of a container that rolls on a cambered base, that is not run as a rigid one, or below which the floor gives
+    way.
+
+    Raises:
+        CaseError, MeshError: one cannot be built.
+    """
+    bodies = {}
+    for name, variant in request.variants.items():
+        case = variant.with_values({"solver.model": request.heading.model})
+        mesh = build_container(case)
+        bodies[name] = BodyAtRest.of(case, mesh, static_checks_of(case, mesh, 0.0))
+    return {name: body for name, body in bodies.items() if body is not None}

@@ -1,32 +1,52 @@
-"""Which values of one key fulfil the rule: the key and its range, a scan, the changes located, the answer in words."""
+"""Which values of one key fulfil the rule: `assess` at one value after another, each until it is decided.
+
+The key and its range, a scan, the changes located, the answer in words. Rows are logged as they are ready, so that an
+interrupted computation continues where it was.
+"""
 
 import math
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby, pairwise
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal, Unpack
 
 import numpy as np
 
 from fem.case.tables.quantities import Quantity
 from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
 from fem.html.page import text_of
+from fem.results.folder import ResultFolder
+from fem.results.kinds import SIZE
 from fem.run.bracket import least_width, values_to_try
-from fem.site.bodies import bodies_of
+from fem.run.expected import expected_words
+from fem.runtime.identity import command_line
+from fem.runtime.own_files import remove_tree
+from fem.seismic.ground_motion import GroundMotion
+from fem.site.page import draw_size
+from fem.site.preview import forecast
 from fem.site.request import TABLES, SiteRequest
-from fem.site.result import BY_RULE, ByRule, SiteAnswer
+from fem.site.result import SAME, SiteAnswer, SizeResult
+from fem.site.run import RUNS, answered, copy_files, set_of, site_hash, texts_of, write_floors
+from fem.site.runs import COLUMNS, bodies_of
+from fem.site.stages import Stages
 from fem.study.axes import AxisError, field_of
 from fem.study.derived import value_in
-from fem.study.driver import COMPLETED, StudyResult
+from fem.study.driver import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.study.runner import Runner
+from fem.study.table import table_text
 from mesh.errors import MeshError
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
 INNER = 3  #: values tried within a bracket at a time
 #: which values a user looks for: the least, the largest, or all
 Wanted = Literal["least", "largest", "window"]
-
-
+FIGURE = "figures/size.svg"
+WORKING = ".motions"  #: of the sets, as long as they are computed
+BYTES_OF_SETS = 50_000_000  #: of motions, as long as they are computed
+MOVING = ("site", "building", "floor_spectrum", "motions")  #: tables whose values have motions of their own
 COUNT = 13  #: values of the scan
 MOST_COUNT = 200
 WIDER = 3.0  #: the scan reaches from the value in the file over this to this times it
@@ -70,38 +90,6 @@ class SizeAxis:
     def __post_init__(self) -> None:
         if len(self.values) < 2 or any(b <= a for a, b in pairwise(self.values)):
             raise ValueError(f"{self.key}: at least two rising values are needed, got {self.values}")
-
-
-@dataclass(frozen=True, kw_only=True)
-class SizePoint(ByRule):
-    """The answer at one value."""
-
-    value: float
-    answer: str | None = None  #: fulfilled | not fulfilled | not sure
-    fulfilled: bool | None = None
-    overturned: int
-    invalid: int = 0  #: runs that destroyed a corner, which do not count as standing
-    runs: int
-    fails: str = ""  #: why it is not fulfilled, in words
-
-
-@dataclass(frozen=True, kw_only=True)
-class SizeResult(StudyResult):
-    """Which values fulfil the rule: what `size.json` holds."""
-
-    command: str = ""
-    wall_s: float | None = None
-    key: str
-    followers: tuple[str, ...] = ()  #: keys that took the same values
-    unit: str
-    low: float  #: ends of the range that was tried
-    high: float
-    #: the least or the largest; None where there is none in the range, or a window is asked
-    value: float | None = None
-    #: of the values that fulfil it, by their outermost values tried
-    intervals: tuple[tuple[float, ...], ...] = ()
-    sentence: str = ""
-    points: tuple[SizePoint, ...] = ()  #: by rising value
 
 
 def size_axis(
@@ -281,9 +269,8 @@ def size_result(
     axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
 ) -> SizeResult:
     """Which values fulfil the rule, from the answers by value."""
-    same = ("answer", "fulfilled", "overturned", "invalid", "runs", *BY_RULE)
     points = tuple(
-        SizePoint(value=value, fails=_reason(answer), **{name: answer[name] for name in same})
+        {"value": value, "fails": _reason(answer)} | {name: answer[name] for name in SAME}
         for value, answer in sorted(answers.items())
     )
     intervals, words = _fulfilled_intervals(points), sentence(axis, points)
@@ -298,9 +285,9 @@ def size_result(
     )
 
 
-def _fulfilled_intervals(points: Sequence[SizePoint]) -> list[tuple[float, float]]:
+def _fulfilled_intervals(points: Sequence[Mapping[str, Any]]) -> list[tuple[float, float]]:
     """Stretches of neighbouring values tried that all fulfil the rule, by rising value."""
-    said = {point.value: "fulfilled" if point.fulfilled else "" for point in points}
+    said = {point["value"]: "fulfilled" if point["fulfilled"] else "" for point in points}
     return [(low, high) for what, low, high in stretches(said) if what]
 
 
@@ -313,7 +300,7 @@ def _wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> f
     return None
 
 
-def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
+def sentence(axis: SizeAxis, points: Sequence[Mapping[str, Any]]) -> str:
     """The answer in one sentence: the value, what fails beyond it, and the islands."""
     intervals = _fulfilled_intervals(points)
     return text_of(
@@ -374,3 +361,107 @@ def spaced(low: float, high: float, count: int) -> tuple[float, ...]:
     """Values of a scan, at equal ratios where the range spans more than a factor of four."""
     even = np.geomspace(low, high, count) if low > 0.0 and high > 4.0 * low else np.linspace(low, high, count)
     return tuple(float(f"{value:.6g}") for value in even)
+
+
+def run_size(
+    request: SiteRequest,
+    axis: SizeAxis,
+    folder: Path,
+    *,
+    allow_outside: bool = False,
+    **options: Unpack[StudyOptions],
+) -> SizeResult:
+    """Find which values of a key fulfil the rule, into a folder; raises as `run_site`.
+
+    Args:
+        axis: the key and the values of the scan.
+        allow_outside: take records from outside the folder of the site file.
+    """
+    ground = Stages.of(request, folder, allow_outside=allow_outside).ground
+    ends = ("--from", f"{axis.values[0]:g}", "--to", f"{axis.values[-1]:g}", "--count", str(len(axis.values)))
+    command = command_line("size", request.origin.place, "--over", axis.key, *ends)
+    begun = size_asked(axis, followers(request, axis.key), command)
+    study = Study(
+        kind=SIZE,
+        request=hash_of([site_hash(request, ground), repr(axis)]),
+        result=SizeResult,
+        begun=begun,
+        compute=partial(_compute, request, axis, begun, allow_outside),
+        texts=texts_of(request, SIZE),
+        size=BYTES_OF_SETS,
+    )
+    return run_study(study, folder, **options)
+
+
+def _compute(
+    request: SiteRequest,
+    axis: SizeAxis,
+    begun: SizeResult,
+    allow_outside: bool,
+    place: ResultFolder,
+    runner: Runner,
+) -> SizeResult:
+    """Verify one value after another, as long as there are any to be tried."""
+    began, working = time.perf_counter(), place.path / WORKING
+    tried: dict[float, Stages] = {}
+    answers: dict[float, SiteAnswer] = {}
+    made: dict[Path, dict[str, GroundMotion]] = {}
+    copy_files(request, place.path)
+    try:
+        while values := next_values(axis, answers):
+            tried |= {
+                value: stages_at(request, axis, value, working, made, allow_outside=allow_outside)
+                for value in values
+            }
+            each = [forecast(tried[value], runner.jobs, scan=False) for value in values]
+            what = f"{len(values)} value{'s' * (len(values) > 1)}, up to {sum(one.most for one in each)} runs"
+            loads = [tried[value].load for value in values]
+            seconds = sum(
+                load * (one.seconds + one.deciding_seconds) for load, one in zip(loads, each, strict=True)
+            )
+            runner.reporter.message(f"{what}: {expected_words(seconds, runner.jobs)}")
+            for value in values:
+                runner.reporter.message(so_far(axis, answers, value))
+                stages = tried[value]
+                answer = answered(stages, set_of(stages), runner, place.path / RUNS, value)
+                if answer is None:
+                    left = f"{len(answers)} values are decided, {len(tried) - len(answers)} are not"
+                    return replace(begun, status=INTERRUPTED, missing=left)
+                answers[value] = answer
+    finally:
+        remove_tree(working)
+    place.check()
+    result = size_result(axis, answers, begun)
+    # by value, and in the order of each verification, whatever the order in which runs ended
+    rows = (
+        (value, *stages.rows[key].values())
+        for value, stages in sorted(tried.items())
+        for key in stages.in_order()
+    )
+    place.write(RUNS, table_text({"value": float} | COLUMNS, rows))
+    place.write(FIGURE, draw_size(result, request.inputs))
+    return replace(result, wall_s=time.perf_counter() - began)
+
+
+def stages_at(
+    request: SiteRequest,
+    axis: SizeAxis,
+    value: float,
+    working: Path,
+    made: dict[Path, dict[str, GroundMotion]],
+    *,
+    allow_outside: bool = False,
+) -> Stages:
+    """The runs at a value; values that do not change the motions share their folder.
+
+    Args:
+        working: holds the folders; made: the motions in each, by stem, to which those of this value are added.
+    """
+    stages = Stages.of(at(request, axis, value), working, allow_outside=allow_outside)
+    moves = axis.key.partition(".")[0] in MOVING
+    folder = working / f"{value if moves else stages.longest:.9g}"
+    motions = made.setdefault(folder, {})
+    motions |= stages.motions
+    stages = replace(stages, folder=folder, motions=motions)
+    write_floors(stages, ground=True)
+    return stages

@@ -20,8 +20,6 @@ from fem.seismic.artificial import artificial_motions
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import MotionSetCheck, check_set
 from fem.seismic.two_directions import largest_slip, largest_slips
-from fem.site.bodies import at_rest_by_the_bound, bodies_of
-from fem.site.copies import inputs_of
 from fem.site.methods import wind_utilisation
 from fem.site.motions import (
     floor_motions,
@@ -31,13 +29,14 @@ from fem.site.motions import (
     on_floor,
     write_csv_files,
 )
-from fem.site.request import SiteRequest
+from fem.site.request import FULL, WIDTH, SiteRequest
 from fem.site.result import (
     FURTHER,
     REFINED,
     REPEATED,
     SCAN,
     SET,
+    STAGES,
     RunKey,
     SiteBody,
     SiteRun,
@@ -45,8 +44,18 @@ from fem.site.result import (
     motion_stem,
 )
 from fem.site.rule import MotionSlips, RunGroup, governing_groups, groups_of, rule_of, runs_by_factor
-from fem.site.runs import RunRows, key_of
-from fem.study.runner import Runner
+from fem.site.runs import (
+    COLUMNS,
+    FOUND,
+    KEYS,
+    NOT_COMPUTED,
+    at_rest_by_the_bound,
+    bodies_of,
+    cells_of,
+    key_of,
+)
+from fem.study.runner import Row, Runner
+from fem.study.table import table_text
 from fem.study.workers import hand_out
 
 #: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
@@ -86,7 +95,9 @@ class Stages:
     motions: dict[str, GroundMotion]  #: on the floor, and further ones, by the stems of their files
     folder: Path  #: that holds the motions
     quick: bool = False  #: the set and its repetitions alone
-    rows: RunRows = field(default_factory=RunRows)
+    runs: dict[RunKey, SiteRun] = field(default_factory=dict)  #: so far
+    rows: dict[RunKey, Row] = field(default_factory=dict)  #: of them in the log
+    still: set[RunKey] = field(default_factory=set)  #: those at rest that were not computed
     #: factors at which a body first moves
     moves: dict[tuple[str, str, str, int, float], float] = field(default_factory=dict)
     began: float  #: when it was asked for [s]
@@ -124,7 +135,7 @@ class Stages:
             floors=floors,
             longest=longest,
             target=motion_target(request, ground, longest),
-            wind=wind_utilisation(bodies, inputs_of(request)),
+            wind=wind_utilisation(bodies, request.inputs),
             resting=at_rest_by_the_bound(request),
             motions=motions,
             folder=folder,
@@ -138,6 +149,30 @@ class Stages:
         """What the checks of the set found."""
         second = self.request.motions.second_component
         return check_set(self.ground, self.target, longest=self.longest, second=second or 1.0)
+
+    def add(self, row: Row) -> None:
+        """Add the row of a run."""
+        key = key_of(row)
+        self.runs[key] = SiteRun(**vars(key), **{name: row[name] for name in FOUND})
+        self.rows[key] = row
+
+    def in_order(self) -> dict[RunKey, SiteRun]:
+        """All runs, stage by stage: not in the order in which they were ready, which depends on the cores."""
+
+        def place(key: RunKey) -> tuple[Any, ...]:
+            container = key.mass != FULL, key.elevation != WIDTH, key.building_period_s or 0.0
+            friction = key.mu_static, key.mu_kinetic
+            return STAGES.index(key.stage), key.factor, *container, *friction, key.motion, -key.vertical_sign
+
+        return {key: self.runs[key] for key in sorted(self.runs, key=place)}
+
+    def table(self) -> str:
+        """`runs.csv`: a row a run, in the same order."""
+        return table_text(COLUMNS, (self.rows[key].values() for key in self.in_order()))
+
+    def found(self, keys: Iterable[RunKey]) -> list[SiteRun]:
+        """The runs of these keys, in their order, as far as they are there."""
+        return [self.runs[key] for key in keys if key in self.runs]
 
     @property
     def signs(self) -> tuple[int, ...]:
@@ -162,41 +197,32 @@ class Stages:
             for motion, sign in product(range(1, len(self.ground) + 1), self.signs)
         ]
 
-    def repeated(self, groups: Iterable[RunGroup]) -> list[RunKey]:
-        """The runs of some groups with changes that nobody can tell apart."""
-        own = [key for group in groups for key in map(key_of, group.runs)]
-        return [replace(key, stage=REPEATED, factor=factor) for factor in REPETITIONS for key in own]
-
     def scanned(self, factor: float) -> list[RunKey]:
         """All runs of the set at another factor."""
         return [replace(key, stage=SCAN, factor=factor) for key in self.of_set()]
 
-    def refined(self, runs: Mapping[RunKey, SiteRun]) -> list[RunKey]:
+    def refined(self) -> list[RunKey]:
         """Runs between the first factor at which a run overturns, or the rule fails, and the factor below.
 
         Where the rule fails, all runs of the groups that fail: it may count their mean.
         """
-        by_factor = runs_by_factor(runs, SET, SCAN)
+        by_factor = runs_by_factor(self.runs, SET, SCAN)
         wanted: dict[RunKey, None] = {}
 
-        def between(first: float, keys: Iterable[RunKey]) -> None:
-            known = {factor: str(factor == first) for factor in by_factor if factor <= first}
-            for factor in values_to_try(known, resolution=0.0, inner=BETWEEN):
-                wanted.update(dict.fromkeys(replace(key, stage=REFINED, factor=factor) for key in keys))
+        def failing(runs: Sequence[SiteRun]) -> list[SiteRun]:
+            groups = (group for group in groups_of(runs) if group.by_rule.fails(self.request.limits))
+            return [run for group in groups for run in group.runs]
 
-        limits = self.request.limits
-        failing = {
-            factor: [group for group in groups_of(own) if rule_of([group]).fails(limits)]
-            for factor, own in by_factor.items()
-        }
-        fell = {
-            factor: [run for run in own if run.outcome == Outcome.OVERTURNED]
-            for factor, own in by_factor.items()
-        }
-        if (first := min((factor for factor, groups in failing.items() if groups), default=None)) is not None:
-            between(first, [key_of(run) for group in failing[first] for run in group.runs])
-        if (first := min((factor for factor, own in fell.items() if own), default=None)) is not None:
-            between(first, list(map(key_of, fell[first])))
+        def overturned(runs: Sequence[SiteRun]) -> list[SiteRun]:
+            return [run for run in runs if run.outcome == Outcome.OVERTURNED]
+
+        for told in (failing, overturned):
+            first = next((factor for factor, runs in by_factor.items() if told(runs)), None)
+            if first is not None:
+                known = {factor: str(factor == first) for factor in by_factor if factor <= first}
+                keys = [*map(key_of, told(by_factor[first]))]
+                for factor in values_to_try(known, resolution=0.0, inner=BETWEEN):
+                    wanted |= dict.fromkeys(replace(key, stage=REFINED, factor=factor) for key in keys)
         return list(wanted)
 
     def of_further(self, groups: Iterable[RunGroup], count: int) -> list[RunKey]:
@@ -214,8 +240,11 @@ class Stages:
         The workers of the runner make the further motions.
         """
         yield self._left(self.of_set())
-        groups = governing_groups(groups_of(self.rows.of(self.of_set())))
-        yield self._left(self.repeated(groups))
+        groups = governing_groups(groups_of(self.found(self.of_set())))
+        own = [key_of(run) for group in groups for run in group.runs]
+        yield self._left(
+            [replace(key, stage=REPEATED, factor=factor) for factor in REPETITIONS for key in own]
+        )
         if not self.has_further:
             return
         further = self.of_further(groups, self.request.motions.further)
@@ -268,13 +297,13 @@ class Stages:
         before = SET, 1.0
         for factor in SCANNED:
             if factor > 1.0:
-                own = (run for key, run in self.rows.runs.items() if (key.stage, key.factor) == before)
+                own = (run for key, run in self.runs.items() if (key.stage, key.factor) == before)
                 tally = rule_of(groups_of(own))
-                if tally.overturned + tally.invalid or (self.rests and tally.fails(self.request.limits)):
+                if tally.not_standing or (self.rests and tally.fails(self.request.limits)):
                     break
                 before = SCAN, factor
             yield self._left(self.scanned(factor))
-        yield self._left(self.refined(self.rows.runs))
+        yield self._left(self.refined())
 
     def moves_at(self, key: RunKey) -> float | None:
         """The factor on the motion of a run at which its body first moves; None where that is not known."""
@@ -305,17 +334,14 @@ class Stages:
 
     def beside(self) -> dict[str, Any]:
         """What the answer rests on beside the runs, as `answer_of` takes it."""
-        in_plane_only = ON_A_SLOPE if self.request.container.floor.slope_percent else ""
-        if not in_plane_only and self._lacks_second:
-            in_plane_only = NO_SECOND
-        if not self.request.motions.second_component:
-            in_plane_only = ""
+        on_a_slope = self.request.container.floor.slope_percent
+        unknown = ON_A_SLOPE if on_a_slope else NO_SECOND if self._lacks_second else ""
         return {
             "wind": self.wind,
             "two_directions": self._two_directions(),
             "slips_of_further": self._slips_of_further(),
-            "in_plane_only": in_plane_only,
-            "still": sum(key.stage == SET for key in self.rows.still),
+            "in_plane_only": unknown if self.request.motions.second_component else "",
+            "still": sum(key.stage == SET for key in self.still),
             "moves_at": self.first_movement,
         }
 
@@ -350,10 +376,8 @@ class Stages:
                 largest_slip(motion.scaled(factor), pair, gravity=gravity) for motion in self.floors[period]
             )
 
-        def too_far(factor: float) -> bool:
-            return largest(factor) > self.request.limits.slip_m
-
-        tried = sorted({1.0, *(key.factor for key in self.rows.runs if key.stage in (SET, SCAN))})
+        limit = self.request.limits.slip_m
+        tried = sorted({1.0, *(key.factor for key in self.runs if key.stage in (SET, SCAN))})
         most = float(slips[worst].max())
         alike = [most, *map(largest, REPETITIONS)]
         return TwoDirections(
@@ -365,7 +389,7 @@ class Stages:
             mu_kinetic=pair[1],
             motion=1 + int(np.argmax(slips[worst])),
             building_period_s=period,
-            margin_factor=next(filter(too_far, tried), None),
+            margin_factor=next((factor for factor in tried if largest(factor) > limit), None),
             slip_range_m=(min(alike), max(alike)),
         )
 
@@ -375,7 +399,7 @@ class Stages:
         if box.floor.slope_percent or not self.request.motions.second_component:
             return {}
         slips: dict[tuple[int, float | None, float, float], float] = {}
-        for key in self.rows.runs:
+        for key in self.runs:
             what = key.motion, key.building_period_s, key.mu_static, key.mu_kinetic
             if key.stage == FURTHER and what not in slips:
                 motion = self.motions[key.stem]
@@ -385,9 +409,14 @@ class Stages:
     def _left(self, keys: Sequence[RunKey]) -> list[RunKey]:
         """Those that must be computed, by their motions; those at rest by the rigid bound are noted."""
         left = []
-        for key in self.rows.missing(keys):
+        for key in keys:
+            if key in self.runs:
+                continue
             if self.at_rest(key):
-                self.rows.rest(key)
+                self.still.add(key)
+                cells = dict(zip(KEYS, cells_of(key), strict=True))
+                found = {**dict.fromkeys(FOUND, 0.0), "outcome": Outcome.REST, "reason": NOT_COMPUTED}
+                self.add(cells | found)
             else:
                 left.append(key)
         return sorted(left, key=lambda key: (key.factor, key.stem, key.vertical_sign))

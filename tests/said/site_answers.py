@@ -15,9 +15,17 @@ from fem.site.answer import answer_of
 from fem.site.methods import found_by_runs
 from fem.site.page import shown
 from fem.site.request import load_site
-from fem.site.result import FURTHER, REPEATED, ConfirmedRun, FloorResult, SiteAnswer, TwoDirections
+from fem.site.result import (
+    FURTHER,
+    REPEATED,
+    ConfirmedRun,
+    FloorResult,
+    SiteAnswer,
+    SizeResult,
+    TwoDirections,
+)
 from fem.site.runs import key_of
-from fem.site.size import SizeAxis, SizeResult, next_values, size_axis, size_result, spaced
+from fem.site.size import SizeAxis, next_values, size_axis, size_result, spaced
 from fem.site.stages import REPETITIONS
 from fem.site.tables import LimitsTable
 

@@ -73,7 +73,7 @@ def test_each_weight_has_a_group_that_governs_rotation_and_one_that_governs_slip
 def test_one_run_that_overturned_or_failed_leaves_no_mean(outcome, overturned, failed):
     first, *others = runs(7)
     (group,) = groups_of([replace(first, outcome=outcome, rotation_ratio=None), *others])
-    assert (group.overturned, group.failed) == (overturned, failed)
+    assert (group.by_rule.overturned, group.by_rule.failed) == (overturned, failed)
     assert (group.by_rule.rotation_ratio, group.by_rule.slip_m) == (None, None)
 
 

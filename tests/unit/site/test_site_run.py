@@ -239,7 +239,7 @@ def test_a_container_that_rests_is_answered_without_a_run(tmp_path, monkeypatch,
 @pytest.mark.parametrize("most", [20_000_000, 1000])
 def test_a_folder_of_results_is_repeated_by_itself(tmp_path, monkeypatch, brief, most):
     """From where it was moved, with the records of two folders; a record that is too large stays where it is."""
-    monkeypatch.setattr("fem.site.copies.MOST_COPIED", most)
+    monkeypatch.setattr("fem.site.run.MOST_COPIED", most)
     target = load_site(site_file(tmp_path)).action
     names = ["in/one.csv", "in/two.csv", "other/one.csv"]
     for name, motion in zip(names, artificial_motions(target, count=3, seed=5, vertical=False), strict=True):

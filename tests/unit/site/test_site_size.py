@@ -7,8 +7,8 @@ from site_answers import FRICTION, WIDTH, ends, size
 from site_example import INPUTS
 
 from fem.results.json_block import to_json
-from fem.site.figures import draw_size
-from fem.site.size import SizeResult
+from fem.site.page import draw_size
+from fem.site.result import SizeResult
 
 
 def test_the_least_width_is_found_within_one_per_cent_on_the_side_that_fulfils():

@@ -12,8 +12,7 @@ from small_site import SITE
 from fem.__main__ import main
 from fem.site.motions import ground_motions
 from fem.site.request import load_site
-from fem.site.size import size_axis
-from fem.site.size_run import stages_at
+from fem.site.size import size_axis, stages_at
 
 SURE = SITE.replace("further = 2", "further = 72\nvertical = false")
 
