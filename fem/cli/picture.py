@@ -100,7 +100,7 @@ def _write_motion(components: list[Component], path: Path, to: Path | None) -> P
     if target.suffix.lower() not in SUFFIXES:
         raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
     # Loads matplotlib.
-    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("recorded", "style"))
+    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("motions", "style"))
     figure = figures.record_figure(components, path.name)
     with writing_into(target.parent, ELSEWHERE_TO):
         if target.suffix.lower() == ".svg":
@@ -133,6 +133,6 @@ def movie(
             place_in(run, "figures/movie.gif")
         else:
             make_folder(path.parent)
-        film = importlib.import_module("fem.render.movie")  # loads pyvista
+        film = importlib.import_module("fem.render.picture")  # loads pyvista
         film.write_movie(opened, path, begin=begin, until=until, rate=fps)
     say(path)

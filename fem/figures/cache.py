@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from fem.html.drawing import Drawing, require_drawing
+from fem.html.page import Drawing, require_drawing
 from fem.model.container import Container
 from fem.results.json_block import to_json
 from fem.results.reader import OpenedRun

@@ -15,14 +15,12 @@ from matplotlib.figure import Figure
 
 from contact.stepping.modes import ROCKING
 from fem.figures import style
-from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
+from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure, joints_figure
 from fem.figures.checks import band_figure, rigid_check_figure
-from fem.figures.energy import energy_figure
-from fem.figures.forces import forces_figure
-from fem.figures.joints import joints_figure
+from fem.figures.forces import energy_figure, forces_figure
 from fem.figures.modes import modes_figure
-from fem.figures.recorded import spectrum_figure
-from fem.html.drawing import Drawing
+from fem.figures.motions import spectrum_figure
+from fem.html.page import Drawing
 from fem.html.units import rounded
 from fem.model.container import Container
 from fem.results.history import History

@@ -11,21 +11,23 @@ import hashlib
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
-from importlib import metadata, resources
+from importlib import metadata
+from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, UndefinedError
+from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined, UndefinedError
+from jinja2.bccache import Bucket
 from markupsafe import Markup, escape
 
-from fem.html.drawing import require_drawing
-from fem.html.formula import formula_markup
 from fem.html.units import (
     ABSENT,
     degrees,
     figure_cell,
     figure_head,
+    formula_markup,
     millimetres,
     number,
     quantity,
@@ -35,9 +37,15 @@ from fem.html.units import (
 )
 from fem.results.figures import FIGURES
 from fem.results.json_block import JsonBlock
+from fem.runtime.own_files import kept_folder
 
-TEMPLATES = "templates"
+TEMPLATES = Path(__file__).parent / "templates"
 
+#: the tag of an element that drawings of matplotlib never hold; a comment begins like one
+FOREIGN = re.compile(
+    r"<(?!/|!--|(?:svg|g|defs|clipPath|path|pattern|rect|circle|line|polyline|polygon|use|text|tspan|image|style|title"
+    r"|desc|metadata|rdf:RDF|cc:Work|cc:Agent|dc:(?:type|format|date|creator|title))[\s/>])[^\s/>]*"
+)
 #: what templates set values with: numbers and units of `fem.html.units`, symbols, and columns of declared figures
 FILTERS = {
     "cell": lambda value, figure: figure_cell(figure, value),
@@ -60,6 +68,29 @@ FILTERS = {
     "typeset": typeset,
     "used": lambda value, figures: "∞" if value is None else number(value, figures=figures),
 }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """A figure as SVG."""
+
+    name: str
+    title: str
+    cursor: dict[str, Any] | None  #: where a cursor moves over it, see `cursor_axes`
+    svg: str  #: the text of the file
+
+
+def require_drawing(text: str) -> None:
+    """Refuse what is no drawing.
+
+    Raises:
+        ValueError: no SVG, or elements in it that no drawing has.
+    """
+    _, start, inside = text.partition("<svg")
+    if not start:
+        raise ValueError("no drawing")
+    if foreign := FOREIGN.search(inside):
+        raise ValueError(f"a drawing must not hold {foreign[0]}>")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,8 +181,7 @@ def text_of(template: str, macro: str = "", **shown: Any) -> str:
 @cache
 def template_text(name: str) -> Markup:
     """A style sheet or script of `fem/html/templates`, for a page."""
-    text = resources.files("fem.html").joinpath(TEMPLATES, name).read_text(encoding="utf-8")
-    return Markup(text)  # our own file, never a user's
+    return Markup((TEMPLATES / name).read_text(encoding="utf-8"))  # our own file, never a user's
 
 
 def svg_element(text: str, *, label: str, prefix: str) -> Markup:
@@ -171,13 +201,28 @@ def svg_element(text: str, *, label: str, prefix: str) -> Markup:
     return Markup(element.replace("<svg", f'<svg role="img" aria-label="{escape(label)}"', 1))
 
 
+class _KeptTemplates(FileSystemBytecodeCache):
+    """Templates as compiled by an earlier process; jinja compares their text."""
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        with suppress(Exception):  # a damaged file is none
+            super().load_bytecode(bucket)
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        with suppress(OSError):
+            super().dump_bytecode(bucket)
+
+
 @cache
 def _environment(*, autoescape: bool = True) -> Environment:
+    kept = kept_folder(f"templates-jinja{metadata.version('jinja2')}")
     environment = Environment(
-        loader=PackageLoader("fem.html", TEMPLATES),
+        loader=FileSystemLoader(TEMPLATES),
+        # what is compiled with and without escaping differs
+        bytecode_cache=None if kept is None else _KeptTemplates(str(kept), f"{autoescape}-%s"),
         autoescape=autoescape,
         undefined=StrictUndefined,
-        optimized=False,  # most templates are set once, and compiling takes longer than that
+        optimized=False,  # most templates are set once, and folding constants takes longer than that
         trim_blocks=True,
         lstrip_blocks=True,
     )

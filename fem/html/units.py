@@ -1,16 +1,23 @@
-"""Numbers and units for pages: kN, kNm, mm, degrees, MPa; four figures unless stated otherwise.
+"""Numbers, units and formulas for pages: kN, kNm, mm, degrees, MPa; four figures unless stated otherwise.
 
-A trailing zero that is known is kept: 98.10, not 98.1.
+A trailing zero that is known is kept: 98.10, not 98.1. Of formulas, symbols of one letter are set in italics, with
+their index; words and numbers upright; powers, written as ^2.5, raised.
 """
 
 import math
 import re
+
+from markupsafe import Markup, escape
 
 from fem.results.figures import Shown
 from fem.runtime.units import MILLIMETRES, RATIO, DisplayUnit, in_unit, plain_number
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+#: a letter alone, but pi and the s of a unit such as m/s, with what follows its underscore; or a power
+SYMBOL = re.compile(
+    r"(?<![A-Za-zα-ωΩ_])(?<!m/)([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z0-9μ]+))?(?![A-Za-zα-ωΩ])|\^([−0-9.]+)"
+)
 
 
 def number(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
@@ -98,3 +105,17 @@ def typeset(text: str) -> str:
 def times_ten_to(exponent: str) -> str:
     """The power of ten behind a mantissa: " × 10⁻⁵" for "-05"."""
     return f" × 10{str(int(exponent)).translate(SUPERSCRIPTS)}"
+
+
+def formula_markup(text: str, *, prose: bool = False) -> Markup:
+    """A formula, escaped; of prose only the symbols that bear an index are set: a letter alone may be a word."""
+    parts, end = [], 0
+    for match in SYMBOL.finditer(text):
+        letter, index, power = match.groups()
+        if prose and letter and index is None:
+            continue
+        parts.append(escape(text[end : match.start()]))
+        parts += [Markup("<sup>{}</sup>").format(power)] if power else [Markup("<i>{}</i>").format(letter)]
+        parts += [Markup("<sub>{}</sub>").format(index)] if index else []
+        end = match.end()
+    return Markup("").join([*parts, escape(text[end:])])

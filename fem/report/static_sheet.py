@@ -11,8 +11,7 @@ from typing import NamedTuple
 from markupsafe import Markup
 
 from fem.case.case import Case
-from fem.html.formula import formula_markup
-from fem.html.units import number, short
+from fem.html.units import formula_markup, number, short
 from fem.model.static_checks import (
     CLAUSE_APPLICABLE,
     CLAUSE_OVERTURNING,

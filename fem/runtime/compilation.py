@@ -35,7 +35,6 @@ class Compilations(event.Listener):
         self.message: Callable[[str], None] | None = None  #: where to announce long ones
 
     def on_start(self, event: event.Event) -> None:
-        """A compilation begins."""
         self._depth += 1
         if self._depth > 1:
             return
@@ -51,7 +50,6 @@ class Compilations(event.Listener):
         self.message(f"compiling the stepping of {body}, once after installation: {time_left}")
 
     def on_end(self, event: event.Event) -> None:
-        """It has ended, or failed."""
         self._depth, self._functions = self._depth - 1, self._functions + 1
         took = time.perf_counter() - self._began
         if self._depth == 0:

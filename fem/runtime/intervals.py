@@ -76,11 +76,7 @@ def replicate_interval(means: FloatArray, draws: int, confidence: float) -> tupl
         means: (r,) of the replicates; draws: in all of them together, or those that count as independent.
     """
     mean, count = float(means.mean()), round(float(means.mean()) * draws)
-    half = (
-        float(stdtrit(means.size - 1, 0.5 + 0.5 * confidence))
-        * float(means.std(ddof=1))
-        / math.sqrt(means.size)
-    )
+    half = float(stdtrit(means.size - 1, 0.5 + 0.5 * confidence) * means.std(ddof=1)) / math.sqrt(means.size)
     low, high = max(mean - half, 0.0), min(mean + half, 1.0)
     if min(count, draws - count) < FEW:
         binomial = binomial_interval(count, draws, confidence)

@@ -10,8 +10,8 @@ import re
 import secrets
 import shutil
 import stat
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
+from contextlib import suppress
 from io import FileIO
 from pathlib import Path, PurePath
 from typing import BinaryIO
@@ -47,9 +47,8 @@ def appended(path: Path, length: int) -> FileIO:
     return file
 
 
-@contextmanager
-def replacing(path: Path, *, to_disk: bool = True) -> Iterator[BinaryIO]:
-    """Open what replaces a file in one step; it reaches the disk before the old one goes.
+def write_atomically(path: Path, content: str | bytes, *, to_disk: bool = True) -> None:
+    """Replace a file in one step; it reaches the disk before the old one goes.
 
     Raises:
         OSError: it cannot be written; the old file is still there.
@@ -57,7 +56,7 @@ def replacing(path: Path, *, to_disk: bool = True) -> Iterator[BinaryIO]:
     part = path.with_name(f".part-{secrets.token_hex(8)}")
     try:
         with created(part) as file:
-            yield file
+            file.write(content.encode() if isinstance(content, str) else content)
             file.flush()
             if to_disk:
                 os.fsync(file.fileno())
@@ -70,15 +69,24 @@ def replacing(path: Path, *, to_disk: bool = True) -> Iterator[BinaryIO]:
         raise
 
 
-def write_atomically(path: Path, content: str | bytes, *, to_disk: bool = True) -> None:
-    """Replace a file in one step; errors as `replacing`."""
-    with replacing(path, to_disk=to_disk) as file:
-        file.write(content.encode() if isinstance(content, str) else content)
-
-
 def copy_file(source: Path, target: Path) -> None:
-    """Replace a file by a copy of a regular one; errors as `read_own` and `replacing`."""
+    """Replace a file by a copy of a regular one; errors as `read_own` and `write_atomically`."""
     write_atomically(target, read_own(source))
+
+
+def kept_folder(name: str) -> Path | None:
+    """A folder beside that of the compiled kernels, for what can be made again; None where others may write into it."""
+    named = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    with suppress(OSError, RuntimeError):  # without a home
+        folder = (Path(named) if named else Path.home() / ".cache") / "unanchored" / name
+        folder.mkdir(parents=True, exist_ok=True)
+        states = [place.stat() for place in (folder, folder.parent)]
+        if not hasattr(os, "getuid") or all(
+            state.st_uid == os.getuid() and not state.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+            for state in states
+        ):
+            return folder
+    return None
 
 
 def make_folder(folder: Path) -> None:

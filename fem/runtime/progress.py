@@ -72,7 +72,6 @@ class ScreenReporter(Reporter):
         self._task = self._bar.add_task("")
 
     def start(self, duration: float, begun: float = 0.0) -> None:
-        """Work starts at `begun` [s], later than 0 in a resumed run, and will end at `duration` [s]."""
         if self._quiet:
             return
         self.finish()
@@ -85,8 +84,6 @@ class ScreenReporter(Reporter):
         self._due = self._now() + self._pause
 
     def update(self, time: float, ratio: float, mode: str) -> None:
-        """Show the line if the last one is old enough."""
-
         def line() -> str:
             self._bar.update(self._task, completed=time)
             task = self._bar.tasks[-1]
@@ -100,7 +97,6 @@ class ScreenReporter(Reporter):
         self.tell(line)
 
     def tell(self, line: Callable[[], str]) -> None:
-        """Show a line if the last one is old enough."""
         if self._quiet or self._now() < self._due:
             return
         self._due = self._now() + self._pause
@@ -110,16 +106,13 @@ class ScreenReporter(Reporter):
             self._console.print(Text(shown(line())), soft_wrap=True)
 
     def message(self, text: str) -> None:
-        """Print a sentence; a line in place stays below it."""
         if not self._quiet:
             self.warning(text)
 
     def warning(self, text: str) -> None:
-        """Print a sentence, quiet or not."""
         self._console.print(Text(shown(text)), soft_wrap=True)
 
     def finish(self) -> None:
-        """Remove the line."""
         if self._bar.live.is_started:
             self._bar.stop()
 

@@ -9,7 +9,7 @@ from record_files import G, synthetic_motion
 
 from fem.__main__ import main
 from fem.case.case import case_hash, load_case
-from fem.figures.recorded import spectrum_figure
+from fem.figures.motions import spectrum_figure
 from fem.results.reader import open_run
 
 FIRST, SECOND, THIRD = synthetic_motion(401)

@@ -9,13 +9,11 @@ import pytest
 from PIL import Image
 
 import fem
-import fem.render.movie
+import fem.render.picture
 from fem import __main__ as command_line
 from fem.case.case import load_case
 from fem.render import opengl as rendering
-from fem.render.caption import caption
-from fem.render.movie import write_movie
-from fem.render.picture import Scene, time_of_largest_rotation, write_picture
+from fem.render.picture import Scene, caption, time_of_largest_rotation, write_movie, write_picture
 from fem.render.scene import summarise_frames
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
@@ -141,7 +139,7 @@ def test_a_gif_is_in_real_time(run, renders, tmp_path):
 
 
 def test_without_the_encoder_an_mp4_is_refused_with_the_way_out(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(fem.render.movie, "find_spec", lambda name: None)
+    monkeypatch.setattr(fem.render.picture, "find_spec", lambda name: None)
     with pytest.raises(FolderError, match=r"pip install 'imageio\[ffmpeg\]'"):
         write_movie(run, tmp_path / "film.mp4", begin=0.0, until=9.0, rate=25.0)
 

@@ -7,7 +7,7 @@ import pytest
 
 import fem
 from fem.case.case import load_case
-from fem.figures.energy import energy_figure
+from fem.figures.forces import energy_figure
 from fem.run.card import card_of
 from fem.run.run import RunOptions, run_case
 

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from site_answers import brief_page
 from site_example import example, write_example
 
-from fem.html.formula import formula_markup
+from fem.html.units import formula_markup
 from fem.results.errors import FolderError
 from fem.site.page import site_report
 from fem.site.result import RESULT_FILE
