@@ -98,7 +98,7 @@ LOADING_LATE = {
     "fem/results/fields.py",
     "fem/results/history.py",
     "fem/results/reader.py",
-    "fem/run/checks.py",
+    "fem/run/compute.py",
     "fem/site/motions.py",
     "mesh/files.py",
 }

@@ -71,7 +71,7 @@ def preview_of(case: Case) -> Preview:
     preview = Preview(case=case, mesh=mesh, motion=summary, duration=duration)
     if not preview.stands_plainly and node_count(mesh, case.solver.order) <= MOST_NODES:
         motions = importlib.import_module("fem.model.motion").build_motions(case)
-        resolved = importlib.import_module("fem.run.solve").resolve(case, mesh, motions)
+        resolved = importlib.import_module("fem.run.compute").resolve(case, mesh, motions)
         importlib.import_module("fem.model.model").build_model(resolved, motions=motions)
     return preview
 

@@ -13,8 +13,7 @@ from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Verdict
-from fem.run.checks import has_analytic_block
-from fem.run.compute import compute
+from fem.run.compute import compute, has_analytic_block
 from fem.run.rigid_check import analytic_block
 from fem.runtime.units import MILLIMETRES, PERCENT, RATIO
 

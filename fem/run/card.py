@@ -1,9 +1,19 @@
-"""The verdict of a run as a card of five lines, from the numbers of a result alone: what `card.txt.j2` says."""
+"""The verdict of a run as a card of five lines, and the warnings: what the reader must know before relying on it.
 
+`card.txt.j2` and `warnings.txt.j2` say when, and in which words, from the numbers of a result.
+"""
+
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from math import comb
 from typing import Any
 
+from contact.stepping.ledger import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
+from contact.stepping.modes import ROCKING
+from fem.case.case import Case
+from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.tables.input_ranges import DASHPOT, WEAKENING
 from fem.case.tables.unknown_inputs import WORDS, in_words, value_in_words
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import RUN
@@ -11,24 +21,25 @@ from fem.results.outcome import Ending
 from fem.results.run_result import (
     Band,
     ChangedRun,
+    Energy,
     MotionResult,
     Numerics,
     RunResult,
     StaticResult,
     Verdict,
+    to_overturn,
 )
-from fem.run.described import fall_in_row, links_in_words, part_covered, rule_says, sides_in_words
-from fem.run.joints import joints_in_words
-from fem.run.ranges import largest_rotation, largest_slip, of_band, reach_of
-from fem.run.sureness import (
-    below_uplift,
-    ending,
-    numerical,
-    rests_on_stiff_floor,
-    stands,
-    static_use,
+from fem.run.described import (
+    doubts,
+    fall_in_row,
+    joints_in_words,
+    links_in_words,
+    part_covered,
+    rule_says,
+    sides_in_words,
 )
-from fem.run.words import sentence
+from fem.run.sureness import below_uplift, ending, numerical, rests_on_stiff_floor, stands, static_use
+from fem.run.words import largest_rotation, of_band, paragraphs, plastic_corner, reach_of, sentence
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import PERCENT, in_figures
 
@@ -38,6 +49,22 @@ STAYS = 0.9  #: slip at the end over the largest, from which the one says the ot
 CONFIDENCE = 0.95
 MOST_NAMED, DECIDING = 2, 3  #: changes in a sentence; inputs that decide
 DOES = {Ending.STANDING: "stands", Ending.OVERTURNED: "overturns", Ending.INVALID: "destroys a corner"}
+LIMITS: dict[str, Any] = {
+    "NEAR": 0.5,  #: share of a limit from which there is a warning
+    "REJECTED_SHARE": 0.05,
+    "FLIGHT": 0.05,  #: share of the rocking in the air from which it is said
+    #: largest von Mises stress over Young's modulus up to which `reduced` and `full` agree within 5 %: blocks of one to
+    #: ten boxes, corners and flat, of 1e9 to 1.5e6 Pa; at 0.024 they differ by 9 % (`fem/README.md`)
+    "SMALL_STRAIN": 0.01,
+    #: relaxation time of the contact over the time scale of rocking 1/p, from which the dashpot is more than a loss at
+    #: impacts: the rotation ratio of a rigid `rocking` on its flat base is 0.85 at 0.006, 0.68 at 0.15, 0.49 at 0.31
+    "FAST_RELAXATION": 0.1,
+    "ROCKING": ROCKING,
+    "GAIN_LIMIT": GAIN_LIMIT,
+    "MOST_FREE_MOTION": MOST_FREE_MOTION,
+}
+#: slip over the width, and its change over the larger one, from which a scatter is said
+SLIPS, SCATTER = 1e-3, 0.2
 #: the lines of a card: what it does, the margin that governs, how far it moves, how sure that is, the static rule
 LINES = ("does", "margin_line", "how_far", "sureness", "static_line")
 
@@ -45,6 +72,15 @@ LINES = ("does", "margin_line", "how_far", "sureness", "static_line")
 def times(factor: float) -> str:
     """A factor on a motion, with two decimals at most."""
     return in_figures(factor, 3 if factor >= 1.0 else 2)
+
+
+def with_words(result: RunResult, case: Case) -> RunResult:
+    """The result with its warnings and the card of its verdict, which follow from the rest."""
+    result = replace(result, warnings=tuple(warnings_for(result, case)))
+    if result.verdict is None:
+        return result
+    card = card_of(result)
+    return replace(result, verdict=replace(result.verdict, first_line=card[0], card=card))
 
 
 def card_of(result: RunResult) -> tuple[str, ...]:
@@ -72,13 +108,18 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     motion, angle, tilt = result.motion or MotionResult(), static.slenderness_angle_rad, verdict.tilt_rad
     leans = angle and tilt is not None and abs(tilt) >= LEANING * angle and not verdict.restored
     shown = {
+        "SEEN": SEEN,
+        "STAYS": STAYS,
+        "times": times,
+        "rule_says": rule_says,
+        "deciding_in_words": deciding_in_words,
         "verdict": verdict,
         "static": static,
         "motion": motion,
         "in_row": fall_in_row(verdict),
         "others": _others(verdict) if result.status in RUN.finished else None,
         "most": max((*(reach_of(verdict, SLIPPED) or ()), verdict.slipped)),
-        "slip": largest_slip(verdict),
+        "slip": of_band(verdict, SLIPPED),
         "slip_at_end": of_band(verdict, "residual_slip_m"),
         "left_leaning": abs(tilt) if leans and tilt is not None else 0.0,
         "covered": part_covered(motion),
@@ -90,9 +131,7 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "of": _variations(verdict.band) if verdict.band and verdict.band.members else None,
         "sides": sides_in_words(result.sides),
     }
-    named = {"SEEN": SEEN, "STAYS": STAYS, "times": times, "rule_says": rule_says}
-    named |= {"deciding_in_words": deciding_in_words}
-    return [sentence("card.txt.j2", name, **shown, **named) for name in names]
+    return [sentence("card.txt.j2", name, **shown) for name in names]
 
 
 def _others(verdict: Verdict) -> tuple[str, int, int] | None:
@@ -122,12 +161,12 @@ def _variations(band: Band) -> dict[str, Any]:
         "numerical_alone": all(map(numerical, tried)),
         "other_ways": [other for other in band.outcomes if other != own.outcome],
         "crossing": len(crossing),
-        "alone": [(what, changes_in_words(runs)) for what, runs in by_kind if runs],
+        "alone": [(what, _changes_in_words(runs)) for what, runs in by_kind if runs],
         "draws": len(draws),
         "drawn": drawn,
         "finer_does": next((DOES[ending(member)] for member in other_end if numerical(member)), ""),
         "failed": len(failed),
-        "failed_alone": changes_in_words(failed_alone) if failed_alone else "",
+        "failed_alone": _changes_in_words(failed_alone) if failed_alone else "",
         "below_uplift": below_uplift(band.members),
         "rests_on_stiff_floor": rests_on_stiff_floor(band.members),
     }
@@ -136,14 +175,12 @@ def _variations(band: Band) -> dict[str, Any]:
 def deciding_in_words(keys: Sequence[str]) -> str:
     """The inputs that decide, as far as a sentence holds them."""
     named = [WORDS.get(key, key) for key in keys[:DECIDING]]
-    return (
-        f"{', '.join(named)} and others"
-        if len(keys) > DECIDING
-        else " and ".join(filter(None, (", ".join(named[:-1]), *named[-1:])))
-    )
+    if len(keys) > DECIDING:
+        return f"{', '.join(named)} and others"
+    return " and ".join(filter(None, (", ".join(named[:-1]), *named[-1:])))
 
 
-def changes_in_words(runs: Sequence[ChangedRun]) -> str:
+def _changes_in_words(runs: Sequence[ChangedRun]) -> str:
     """What was changed in the first of these runs, each by itself, and how many more there are."""
     words = [in_words(run.values or {}) for run in runs[:MOST_NAMED]]
     more = len(runs) - MOST_NAMED
@@ -192,3 +229,73 @@ def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
                     value = value_in_words(key, limit)
                     least = chance, f", and all {beyond} with {WORDS[key]} {side} {value} {words}"
     return least[1]
+
+
+def warnings_for(result: RunResult, case: Case) -> list[str]:
+    """All warnings that apply to a result, the most important first."""
+    verdict, static = result.verdict or Verdict(), result.static or StaticResult()
+    numerics, energy = result.numerics or Numerics(), result.energy or Energy()
+    reference = energy.reference_J or math.inf
+    parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J, energy.crushing_J)
+    known = energy.reference_J and energy.numerical_J is not None
+    width, angle = case.stack[0].width, static.slenderness_angle_rad
+    own_dashpot = {case.contact_damping_ratio: verdict.rotation_ratio}
+    varied = {ratio: run.rotation_ratio for ratio, run in _changed_alone(verdict, DASHPOT).items()}
+    # dashpot over spring, of the whole mass on half the base's stiffness: see contact.penalty.relaxation_time
+    frequency, ratio = (
+        numerics.contact_frequency_Hz,
+        numerics.contact_damping_ratio or case.contact.damping_ratio,
+    )
+    return paragraphs(
+        "warnings.txt.j2",
+        **LIMITS,
+        case=case,
+        result=result,
+        verdict=verdict,
+        static=static,
+        own=static.ruling,
+        numerics=numerics,
+        sureness=line(result, "sureness"),
+        by_weakening=_changed_alone(verdict, WEAKENING),
+        by_dashpot=own_dashpot | varied,
+        scatter=_scatter(verdict, width),
+        doubts=doubts(result.motion or MotionResult(), case.gravity_m_s2),
+        ends_at_rest=ends_at_rest(case),
+        longest_time=longest_time(case),
+        gained=-(energy.numerical_J or 0.0) / reference,
+        lost=(energy.closure_error or 0.0) * reference if known else 0.0,
+        lost_limit=max(LOSS_SHARE_LIMIT * sum(part or 0.0 for part in parts), LOSS_LIMIT * reference),
+        to_overturn=to_overturn(bool(case.neighbour)),
+        tilted=(numerics.max_penetration_m or 0.0) / (width * angle) if angle else 0.0,
+        creep=_creep(case, static.ruling.utilisation_sliding),
+        relaxation=2.0 * ratio * math.sqrt(2.0) / (2.0 * math.pi * frequency) if frequency else 0.0,
+        damping_ratio=ratio,
+        plastic_corner=plastic_corner(verdict),
+    )
+
+
+def _changed_alone(verdict: Verdict, key: str) -> dict[float, ChangedRun]:
+    """The variations of a run that change nothing but a number, by that number."""
+    return {
+        float(member.values[key]): member
+        for member in (verdict.band or Band()).members
+        if member.values is not None and [*member.values] == [key] and member.rotation_ratio is not None
+    }
+
+
+def _scatter(verdict: Verdict, width: float) -> float | None:
+    """The slip with steps ten times as accurate, where it is another one and as likely as that of the run [m]."""
+    band, own = verdict.band or Band(), verdict.max_slip_m
+    finer = next((member.max_slip_m for member in band.members[1:] if numerical(member)), None)
+    if own is None or finer is None or band.max_slip_m is None:
+        return None
+    low, high = band.max_slip_m
+    small = max(own, finer) < SLIPS * width or abs(own - finer) < SCATTER * max(own, finer)
+    return None if small or not low <= finer <= high else finer  # beyond: it fell, or destroyed a corner
+
+
+def _creep(case: Case, share: float | None) -> float | None:
+    """v = v_reg artanh(s) under a steady load of share s of what friction carries, over the run: no true stick [m]."""
+    if case.contact.sticks or share is None or not 0.0 < share < 1.0:
+        return None
+    return case.contact.regularisation_velocity_m_s * math.atanh(share) * longest_time(case)

@@ -1,38 +1,279 @@
-"""A run in memory, for scripts and notebooks: `fem.compute(case)` gives what `python -m fem run` writes."""
+"""The computation of a run: a resolved case, stepping until done, the checks, the result in numbers and words.
 
+`fem.compute(case)` keeps it in memory and gives what `python -m fem run` writes; `fem.run.run` keeps it in a folder.
+The checks are the rigid block, the band over what is not known and the margin; all can be added to a run that was
+finished without them.
+"""
+
+import importlib
+import math
 import sys
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from contact.motion.base_motion import BaseMotion
 from fem.case.case import Case, case_hash
+from fem.case.tables.duration import ends_at_rest, longest_time
+from fem.case.tables.links import TieTable
 from fem.case.validation import CaseError
 from fem.model.container import Container, discretise
-from fem.model.geometry import build_container
-from fem.model.model import build_model
-from fem.model.motion import build_motions
+from fem.model.floor_numbers import floor_result
+from fem.model.frames import frame_interval
+from fem.model.geometry import build_container, node_count
+from fem.model.links import heights_of_links
+from fem.model.model import Model, build_model
+from fem.model.motion import build_motions, longest_run, motion_result
 from fem.model.recovery import recovery_of
+from fem.model.static_checks import static_checks_of
+from fem.model.step_size import largest_step_of
+from fem.model.support import normal_penalty
 from fem.results.fields import Fields, Frame, FrameKeeper
 from fem.results.history import History
+from fem.results.kinds import RUN
 from fem.results.reader import pyvista_grid
-from fem.results.run_result import RunResult, Verdict
-from fem.run.checks import WantedChecks, add_checks
+from fem.results.run_result import LinkResult, Numerics, RigidCheckResult, RunResult, Verdict
+from fem.run.band import ChangedRunsFile, rests_far_below_limits, wants_band, with_band
+from fem.run.card import with_words
+from fem.run.described import sides_of
 from fem.run.drawn_links import LinkCells
+from fem.run.margin import margin_of, wants_margin
 from fem.run.opened import plotted
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
-from fem.run.solve import begun, in_words, resolve, stepped
+from fem.run.simulation import BEGINNING, Progress, simulate
+from fem.run.sureness import SURE
+from fem.run.verdict import energy_of, joint_demands, numerics_of, verdict_of
 from fem.runtime.compilation import compilation_announced
+from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter
 from fem.runtime.signals import stop_requested
 from fem.runtime.terminal import say
 from fem.runtime.threads import use_one_blas_thread
+from mesh.container import ContainerMesh
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from fem.results.reader import UnstructuredGrid
+    from fem.run.rigid_check import RigidCheck
+
+
+def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> Case:
+    """The case with every "auto" replaced by the value chosen; running it again gives the same result.
+
+    Raises:
+        CaseError: a motion that the given step would step over.
+    """
+    chosen = chosen_values(case, mesh, motions)
+    return case.with_chosen(chosen) if chosen else case
+
+
+def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> dict[str, Any]:
+    """What is chosen for a case where it says "auto", by dotted key.
+
+    A duration that depends on when the container comes to rest stays "auto".
+
+    Raises:
+        CaseError: a motion that the given step would step over.
+    """
+    chosen: dict[str, Any] = {}
+    longest = longest_run(case, *motions)
+    if case.contact.normal_penalty_Pa_m == "auto" and not case.floor.is_slab:  # of a slab it follows
+        chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
+    if case.solver.duration_s == "auto" and not ends_at_rest(case):
+        chosen["solver.duration_s"] = longest_time(case)
+    if case.solver.step_s == "auto":
+        row = case.row or (case,)
+        meshes = [mesh, *(build_container(container) for container in row[1:])]
+        each = (static_checks_of(container, own, 0.0) for container, own in zip(row, meshes, strict=True))
+        fastest = max(static.frequency_parameter for static in each)
+        chosen["solver.step_s"], _ = largest_step_of(case, fastest, longest, *motions)
+    if case.output.fields_s == "auto":
+        nodes = node_count(mesh, case.solver.order)
+        chosen["output.fields_s"] = frame_interval(case, nodes, longest)
+    return chosen
+
+
+def begun(model: Model, case_hash: str) -> RunResult:
+    """The result of a run that is to be stepped: what is known before."""
+    case = model.case
+    return RunResult(
+        status="running",
+        case=case.name,
+        title=case.title,
+        overrides=case.overrides or None,
+        case_hash=case_hash,
+        static=(static := model.static.to_result()),
+        sides=sides_of(case.stack[0].width, case.container.depth_m, static)
+        if case.container.mesh_file is None
+        else None,
+        motion=motion_result(case, model.motion, model.vertical),
+        floor=floor_result(case, model.container.mesh, model.static),
+        versions=versions(),
+    )
+
+
+def stepped(
+    model: Model,
+    result: RunResult,
+    recorder: Recorder,
+    *,
+    reporter: Reporter,
+    stop: Callable[[], bool],
+    save: Callable[[Progress, bool], None] | None = None,
+    progress: Progress = BEGINNING,
+) -> tuple[RunResult, History]:
+    """Step a model to its end: the result with verdict, energy and numerics, and the samples.
+
+    Args:
+        model: from its present state on; result: begun.
+        recorder, reporter, stop, save, progress: as for `fem.run.simulation.simulate`.
+    """
+    ending = simulate(model, recorder, reporter=reporter, stop=stop, save=save, progress=progress)
+    history = recorder.history()
+    stress = recorder.largest_von_mises if model.case.solver.model != "rigid" else None
+    verdict = verdict_of(model, history, stress)
+    stops, ties = _link_results(model)
+    result = replace(
+        result,
+        status=ending.status,
+        verdict=verdict if ending.error is None else replace(verdict, outcome=None),
+        joints=joint_demands(model, history),
+        stops=stops,
+        ties=ties,
+        energy=energy_of(model),
+        numerics=numerics_of(model, ending.stepping_cpu_s),
+        error=ending.error,
+    )
+    return result, history
+
+
+def _link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
+    """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
+    case, container = model.case, model.container
+    records = model.run.links[len(case.neighbour) :]
+    heights = heights_of_links(case, container.elements.nodes[container.nodes])
+    results = [
+        LinkResult(
+            side=link.side,
+            height_m=height,
+            neighbour=link.neighbour if isinstance(link, TieTable) else None,
+            max_force_N=float(record.max_force),
+            hits=int(record.hits),
+            largest_closing_velocity_m_s=float(record.largest_closing_velocity),
+            gap_left_m=float(record.least_gap)
+            if math.isinf(record.broken_at) and math.isfinite(record.least_gap)
+            else None,
+            broken_at_s=None if math.isinf(record.broken_at) else float(record.broken_at),
+        )
+        for link, height, record in zip(case.links, heights, records, strict=True)
+    ]
+    stops = len(case.stop)
+    return tuple(results[:stops]) or None, tuple(results[stops:]) or None
+
+
+@dataclass(frozen=True, kw_only=True)
+class WantedChecks:
+    """Which checks are asked for."""
+
+    check_rigid: bool = False
+    band: bool | None = None  #: None: wherever it takes no longer than it is worth
+    margin: bool | None = None  #: None: wherever it takes seconds, and a band is not refused
+    analytic: bool = (
+        False  #: whether the analytic block under the same motion is followed, where there is one
+    )
+    inner_forces: bool = True  #: whether members of a band find stresses and the forces in joints of a stack
+
+
+def add_checks(
+    result: RunResult,
+    model: Model,
+    history_of: Callable[[], History],
+    wanted: WantedChecks,
+    members: ChangedRunsFile | None,
+    *,
+    reporter: Reporter,
+    stop: Callable[[], bool],
+) -> tuple[RunResult, "RigidCheck | None"]:
+    """Add the rigid check, the band and the margin to a finished run, where they are wanted and missing.
+
+    Args:
+        result, model: of the run; history_of: gives its samples.
+        wanted: what is asked for.
+        members: the file of the finished members of a band.
+        reporter: of band and margin.
+        stop: called in pauses; true ends them.
+
+    Returns:
+        The result with them, the same object where nothing was added; and the comparison with the rigid block, where
+        it was made now.
+    """
+    verdict, check = result.verdict, None
+    if result.status not in RUN.finished or verdict is None:
+        return result, None
+    case, missing = model.case, lacking(result, model.case, wanted)
+    analytic = wanted.analytic and verdict.analytic is None and has_analytic_block(case)
+    if "rigid check" in missing or analytic:  # with scipy.integrate
+        block = importlib.import_module("fem.run.rigid_check")
+        events = importlib.import_module("contact.reference.event_driven")
+    if "rigid check" in missing:
+        history = history_of()
+        try:
+            check = block.check_against_rigid_block(model, history, verdict)
+            result = replace(result, rigid_check=check.result)
+        except (ValueError, events.EventError) as error:  # a run too short, a block that bounces without end
+            result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
+    if analytic:
+        end = (result.numerics or Numerics()).simulated_s or 0.0
+        with suppress(ValueError, events.EventError):  # a block that bounces without end has no row
+            verdict = replace(verdict, analytic=block.analytic_block(model, end))
+            result = replace(result, verdict=verdict)
+    if "band" in missing and not stop():
+        judged = with_band(
+            model, result, stop=stop, reporter=reporter, kept_in=members, inner_forces=wanted.inner_forces
+        )
+        if judged is not None:
+            result = replace(result, verdict=judged)
+    elif verdict.sure is None and wanted.band is None and rests_far_below_limits(case, result):
+        result = replace(result, verdict=replace(verdict, sure=SURE))
+    if "margin" in missing and not stop():
+        reporter.message("margin: repeating the run under stronger and weaker motions")
+        margin = margin_of(model, result, drawn=wanted.band is not False, stop=stop)
+        if margin is not None:
+            result = replace(result, verdict=replace(result.verdict or verdict, margin=margin))
+    return result, check
+
+
+def lacking(result: RunResult, case: Case, wanted: WantedChecks) -> set[str]:
+    """What a finished run is still to have, of `rigid check`, `band` and `margin`."""
+    verdict = result.verdict
+    if verdict is None:
+        return set()
+    margin = (wanted.band is not False or bool(wanted.margin)) and wants_margin(wanted.margin, case, result)
+    missing = {
+        "rigid check": result.rigid_check is None and wants_rigid_check(wanted.check_rigid, case),
+        "band": verdict.band is None and wants_band(wanted.band, case, result),
+        "margin": verdict.margin is None and margin,
+    }
+    return {check for check, is_missing in missing.items() if is_missing}
+
+
+def has_analytic_block(case: Case) -> bool:
+    """Whether a case is a block on rigid ground whose motion formulas give: harmonic, a pulse, or a release."""
+    alone = not (case.links or case.neighbour or case.container.is_loose or case.floor.is_slab)
+    moves = case.motion.kind in ("harmonic", "pulse") or case.initial.rotation_rad != 0.0
+    return (
+        alone and moves and case.support.kind == "corners" and not case.rolls and case.motion.kind != "table"
+    )
+
+
+def wants_rigid_check(choice: bool, case: Case) -> bool:
+    """Free rocking always has the check, other runs on request."""
+    return choice or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,5 +405,5 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
         )
     if block is not None:
         history = history.with_analytic(block.analytic_rotation)
-    result = in_words(replace(result, **watch.spent()), case)
+    result = with_words(replace(result, **watch.spent()), case)
     return Run(case=case, typed_result=result, history=history, fields=keeper.fields)

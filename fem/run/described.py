@@ -1,13 +1,20 @@
-"""The floor, its motion, the static rule and what stands beside a container, in words."""
+"""The floor, its motion, the static rule, the boxes of a stack and what stands beside a container, in words."""
 
+import math
+from collections.abc import Sequence
+
+from contact.stepping.modes import ROCKING as ROCKING_SHARE
 from fem.case.case import Case
 from fem.case.tables.input_ranges import MU_KINETIC, STRIBECK, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.records.units import STANDARD_GRAVITY
-from fem.results.outcome import ROCKING, SLIDING, Outcome
+from fem.results.figures import BOX_FIGURES, BoxResult
+from fem.results.outcome import ROCKING, SLIDING, Outcome, least_slide
 from fem.results.run_result import (
+    BoxReach,
     ChangedRun,
     FloorNumbers,
+    JointDemand,
     MotionResult,
     Plane,
     RunResult,
@@ -15,26 +22,27 @@ from fem.results.run_result import (
     StaticResult,
     Verdict,
 )
-from fem.run.joints import largest_joint_slip, limits
 from fem.run.sureness import below_uplift, rests_on_stiff_floor
 from fem.run.words import paragraphs, rows, sentence
-from fem.runtime.units import MANY, METRES, in_figures
+from fem.runtime.units import JOINT_MILLIMETRES, MANY, METRES, SHORT_MILLIMETRES, in_figures
 from fem.seismic.wind import COMBINATION
 
 FRICTION = {MU_KINETIC, WEAKENING, STRIBECK}
 ROUNDING = 1e-9  #: share of a peak
 LEAST = 0.1  #: of a number in a unit, before a smaller unit is taken
 NAMES = {"table": "record", "pulse": "pulse"}
+AS_ONE = "the boxes moved as one"
 
 
 def motion_in_words(motion: MotionResult) -> str:
     """Length, samples and peaks of one motion; empty of a floor at rest, and of a result of an older version."""
-
-    def beside(residual: float, peak: float | None) -> float:
-        """The residual at the end of a motion; 0 where it is rounding error."""
-        return 0.0 if abs(residual) <= ROUNDING * (peak or 0.0) else residual
-
-    return sentence("motion.txt.j2", motion=motion, beside=beside, GRAVITY=STANDARD_GRAVITY)
+    return sentence(
+        "motion.txt.j2",
+        motion=motion,
+        # the residual at the end of a motion; 0 where it is rounding error
+        beside=lambda residual, peak: 0.0 if abs(residual) <= ROUNDING * (peak or 0.0) else residual,
+        GRAVITY=STANDARD_GRAVITY,
+    )
 
 
 def doubts(motion: MotionResult, gravity: float) -> tuple[str, ...]:
@@ -184,3 +192,76 @@ def governing(result: RunResult) -> list[str]:
 def _slides(run: Verdict | ChangedRun, least: float) -> bool:
     """True if it slides on the floor: in a loose stack, if its lowest box slides by more than `least` [m]."""
     return run.outcome in SLIDING and (not run.boxes or run.boxes[0].max_slip_m > least)
+
+
+def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
+    """How the boxes of a loose stack moved on one another: the largest slip and opening; empty of one body."""
+    boxes = verdict.boxes or ()
+    if len(boxes) < 2:
+        return ""
+    slip_limit, opening_limit = limits(static or StaticResult())
+    moved = []
+    for verb, preposition, key, limit, unit in (
+        ("slid", "on", "max_slip_m", slip_limit, JOINT_MILLIMETRES),
+        ("opened", "from", "max_opening_m", opening_limit, SHORT_MILLIMETRES),
+    ):
+        most = most_moved(boxes, key, above=1)
+        if boxes[most][key] > limit:
+            moved.append(f"box {most + 1} {verb} {unit.text(boxes[most][key])} {preposition} box {most}")
+    return ", ".join(moved) or AS_ONE
+
+
+def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
+    """The largest slip of a box on another with its range, and which slid on which; empty of one body."""
+    boxes = verdict.boxes or ()
+    if len(boxes) < 2:
+        return "", ""
+    most = most_moved(boxes, "max_slip_m", above=1)
+    reach = box_reaches(verdict)[most]
+    slip = JOINT_MILLIMETRES.text(boxes[most].max_slip_m, reach.max_slip_m if reach else None)
+    return slip, f"box {most + 1} on box {most}"
+
+
+def most_moved(boxes: Sequence[BoxResult], key: str, above: int = 0) -> int:
+    """Index of the box with the largest figure, from a given box upward."""
+    return max(range(above, len(boxes)), key=lambda k: abs(boxes[k][key] or 0.0))
+
+
+def limits(static: StaticResult) -> tuple[float, float]:
+    """Slip and opening from which a joint counts as sliding and rocking [m], by the limits of the whole stack."""
+    centroid, angle = static.centroid_m, static.slenderness_angle_rad
+    if centroid is None or angle is None:
+        return SHORT_MILLIMETRES.least, SHORT_MILLIMETRES.least
+    width = 2.0 * centroid * math.tan(angle)
+    return least_slide(width), ROCKING_SHARE * angle * width
+
+
+def box_rows(result: RunResult) -> list[tuple[str, ...]]:
+    """Box, largest rotation in degrees, slip, slip left and opening in mm, whether it fell; from the floor up.
+
+    With their ranges over the band, and in how many of its runs the box fell first.
+    """
+    verdict = result.verdict or Verdict()
+    rows: list[tuple[str, ...]] = []
+    members = len(verdict.band.members) if verdict.band is not None else 0
+    for number, (box, reach) in enumerate(zip(verdict.boxes or (), box_reaches(verdict), strict=True), 1):
+        of_band = f"in {reach.fell} of {members} runs" if reach and reach.fell else ""
+        figures = (
+            figure.text(box[key], reach[key] if reach else None, bare=True)
+            for key, figure in BOX_FIGURES.items()
+        )
+        rows.append((str(number), *figures, ", ".join(filter(None, ("fell" if box.fell else "", of_band)))))
+    return rows
+
+
+def box_reaches(verdict: Verdict) -> Sequence[BoxReach | None]:
+    """The ranges of each box over the band, where there is one."""
+    ranges = verdict.band.boxes if verdict.band is not None else None
+    return ranges or [None] * len(verdict.boxes or ())
+
+
+def unbolted(joint: JointDemand) -> str:
+    """What the joint would do without bolts."""
+    events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
+    instants = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
+    return ", ".join(instants) or "stays closed, sticks"

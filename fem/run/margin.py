@@ -26,7 +26,7 @@ from fem.model.motion import peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.results.outcome import NOT_STANDING, Ending, Outcome, ending_of
 from fem.results.run_result import Governing, Margin, Numerics, RunResult, Verdict
-from fem.run.changed_runs import cost_of, key_of, tolerance_of_draws, worker_threads, workers_for
+from fem.run.band import cost_of, key_of, tolerance_of_draws, worker_threads, workers_for
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.sureness import ending, numerical

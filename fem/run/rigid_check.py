@@ -28,7 +28,7 @@ from contact.stepping.modes import ROCKING, SLIDING
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
 from fem.results.run_result import AnalyticBlock, PeakPair, RigidCheckResult, RunAndBlock, Verdict
-from fem.run.joints import AS_ONE, joints_in_words
+from fem.run.described import AS_ONE, joints_in_words
 from fem.run.words import paragraphs
 from fem.runtime.arrays import FloatArray
 

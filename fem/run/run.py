@@ -22,12 +22,12 @@ from fem.results.kinds import RUN, typed_result
 from fem.results.reader import OpenedRun, open_run
 from fem.results.run_files import RunFiles, copy_data_files, require_free_names
 from fem.results.run_result import RunResult
-from fem.run.changed_runs import ChangedRunsFile
-from fem.run.checks import WantedChecks, add_checks, lacking
+from fem.run.band import ChangedRunsFile
+from fem.run.card import with_words
+from fem.run.compute import WantedChecks, add_checks, begun, lacking, resolve, stepped
 from fem.run.expected import expected_s, say_expected, with_band_s
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.preview import required_disk, size_in_words
-from fem.run.solve import begun, in_words, resolve, stepped
 from fem.run.summary import plain_summary
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.memory import CHECKS, FIGURES, RIGID, shortage
@@ -193,7 +193,7 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     Checkpoints are removed after that, when there is nothing left to resume.
     """
     place.check()
-    result = in_words(result, case)
+    result = with_words(result, case)
     place.write(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
     place.write_result(result.to_json())
     if result.status in RUN.finished:

@@ -8,29 +8,42 @@ margin.
 
 import io
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+from rich.box import SIMPLE
 from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from fem.results import run_result
-from fem.results.figures import BRIEF, FIGURES, SUMMARY, TURNED, Place, summary_order
+from fem.results.figures import BOX_FIGURES, BRIEF, FIGURES, SLIPPED, SUMMARY, TURNED, Place, summary_order
 from fem.results.kinds import RUN
 from fem.results.outcome import SLIDING, Outcome
 from fem.run.card import card_of
-from fem.run.described import code_note, fall_in_row, floor_rows, governing, motion_in_words, rule_says
-from fem.run.joints import box_table, joint_tables, largest_joint_slip, table_by, titled_table
-from fem.run.ranges import bolt_forces, in_words, largest_slip, of_band
-from fem.run.words import rows, sentence
+from fem.run.described import (
+    box_rows,
+    code_note,
+    fall_in_row,
+    floor_rows,
+    governing,
+    largest_joint_slip,
+    most_moved,
+    motion_in_words,
+    rule_says,
+    unbolted,
+)
+from fem.run.words import bolt_forces, figure_in_words, impact_note, of_band, paragraphs, rows, sentence
 from fem.runtime.terminal import shown
-from fem.runtime.units import MILLIMETRES, visible_number
+from fem.runtime.units import FEW, MILLIMETRES, in_figures, visible_number
 
 TEXT_WIDTH = 80
 CRUSHED = 1e-4  #: indentation from which a floor counts as crushed [m]
+MOST_JOINTS, MOST_BOXES = 8, 12  #: in a table; of more, those with a largest value
+LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 
 
 def plain_summary(result: run_result.RunResult, *, folder: Path) -> str:
@@ -40,59 +53,55 @@ def plain_summary(result: run_result.RunResult, *, folder: Path) -> str:
         result: of the run; blocks that it did not reach may be missing.
         folder: of the run.
     """
-    return "\n".join([*_lines(_parts(result, folder)), *_files(folder)]) + "\n"
+    return "\n".join([*_lines(result, folder, _whole(result)), *_files(folder)]) + "\n"
 
 
 def brief_summary(result: run_result.RunResult, *, folder: Path) -> str:
     """What the terminal shows after a run: verdict, ranges, the static rule of its own motion, where the rest is."""
-    lines = _lines(_brief_parts(result, folder))
     count = len(result.warnings or ())
     noted = f", with {count} warning{'s' * (count > 1)}" if count else ""
-    return "\n".join([*lines, f"Whole summary{noted}: {folder / 'summary.txt'}", *_files(folder)]) + "\n"
+    rest = (f"Whole summary{noted}: {folder / 'summary.txt'}", *_files(folder))
+    return "\n".join([*_lines(result, folder, _brief(result)), *rest]) + "\n"
 
 
-def _lines(parts: Iterator[RenderableType]) -> list[str]:
+def _lines(result: run_result.RunResult, folder: Path, parts: Iterable[RenderableType]) -> list[str]:
+    # Text, never markup: titles, folders and warnings may hold anything.
+    title = Text(result.title or result.case or folder.name)
     console = Console(file=io.StringIO(), width=TEXT_WIDTH, color_system=None, highlight=False)
     with console.capture() as capture:
-        console.print(*parts, sep="\n")
+        console.print(title, Text("\n".join(card_of(result)) + "\n"), *parts, sep="\n")
     return [line.rstrip() for line in shown(capture.get()).splitlines()]
 
 
-def _brief_parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
-    # Text, never markup: titles, folders and warnings may hold anything.
-    yield from _heading(result, folder)
-    verdict, motion = result.verdict or run_result.Verdict(), result.motion or run_result.MotionResult()
-    yield from _table_of_pairs(_of_whom(verdict), _rows(result, "brief_results", BRIEF))
-    of_record = (*motion.notes, *(motion.vertical.notes if motion.vertical else ()))
-    if of_record:  # what was read is no detail
-        yield Text("".join(f"Warning: {note}\n" for note in of_record))
+def _brief(result: run_result.RunResult) -> Iterator[RenderableType]:
+    motion = result.motion or run_result.MotionResult()
+    yield from _table_of_rows(result, "brief_results", BRIEF)
+    # what was read is no detail
+    yield from _warnings((*motion.notes, *(motion.vertical.notes if motion.vertical else ())))
     if result.static is not None:
         yield _static_table(replace(result.static, code=None, code_q1=None), to_compare(result))
 
 
-def _heading(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
-    """The title and the card."""
-    yield Text(result.title or result.case or folder.name)
-    yield Text("\n".join(card_of(result)) + "\n")
-
-
-def _parts(result: run_result.RunResult, folder: Path) -> Iterator[RenderableType]:
+def _whole(result: run_result.RunResult) -> Iterator[RenderableType]:
     verdict = result.verdict or run_result.Verdict()
-    yield from _heading(result, folder)
-    yield from _table_of_pairs(_of_whom(verdict), result_rows(result))
+    yield from _table_of_rows(result, "results")
     if result.static is not None:
         yield _static_table(result.static, to_compare(result))
         yield from (Text(f"{sentence}\n") for sentence in governing(result))
         if note := code_note(result.static):
             yield Text(f"{note}\n")
-    yield from box_table(result)
+    yield from _box_table(result)
     if result.joints:
-        yield from joint_tables(result.joints, verdict)
+        yield from _joint_tables(result.joints, verdict)
     if note := band_note(verdict.band):
         yield Text(f"{note}\n")
-    if result.warnings:
-        yield Text("".join(f"Warning: {warning}\n" for warning in result.warnings))
-    yield from _table_of_pairs("Numerics", _rows(result, "computation"))
+    yield from _warnings(result.warnings or ())
+    yield from _table_of_rows(result, "computation", title="Numerics")
+
+
+def _warnings(texts: Sequence[str]) -> Iterator[Text]:
+    if texts:
+        yield Text("".join(f"Warning: {text}\n" for text in texts))
 
 
 def band_note(band: run_result.Band | None) -> str:
@@ -108,17 +117,13 @@ def to_compare(result: run_result.RunResult) -> run_result.Verdict:
 
 def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) -> Table:
     """Sliding and overturning under each action, one below the other."""
-
-    def use(utilisation: float | None, demand: float | None) -> float | None:
-        """A utilisation as `run.json` has it, where a demand without any capacity has none: infinite."""
-        return math.inf if utilisation is None and demand else utilisation
-
-    return table_by(
+    return _table_by(
         "summary.txt.j2",
         "static_rules",
         static=static,
         own_motion=own_motion_name(static),
-        use=use,
+        # `run.json` has none of a demand without any capacity: it is infinite
+        use=lambda utilisation, demand: math.inf if utilisation is None and demand else utilisation,
         seen=visible_number,
         rule_says=rule_says,
         found=partial(run_found, verdict),
@@ -142,7 +147,7 @@ def run_found(verdict: run_result.Verdict, check: str) -> str:
         "found.txt.j2",
         check,
         verdict=verdict,
-        slip=largest_slip(verdict),
+        slip=of_band(verdict, SLIPPED),
         between=largest_joint_slip(verdict)[0],
         ratio=of_band(verdict, TURNED),
         uplift=of_band(verdict, "max_uplift_m"),
@@ -150,17 +155,73 @@ def run_found(verdict: run_result.Verdict, check: str) -> str:
     )
 
 
-def _of_whom(verdict: run_result.Verdict) -> str:
-    """The title of the figures of a run."""
-    return "The run, of the container itself" if verdict.neighbours else "The run"
+def _titled_table(title: str, *columns: str) -> Table:
+    """An empty table; the numbers of a column that begins with > are aligned at the right."""
+    table = Table(
+        title=title, title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0), show_header=any(columns)
+    )
+    for name in columns:
+        table.add_column(name.removeprefix(">"), justify="right" if name.startswith(">") else "left")
+    return table
 
 
-def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Table]:
-    if rows:
-        table = titled_table(title, "", "")
-        for row in rows:
-            table.add_row(*map(Text, row))
+def _table_by(template: str, macro: str, **shown: Any) -> Table:
+    """A table by a macro of a template: `title | head | head`, then one row after the other."""
+    lines = [[cell.strip() for cell in text.split("|")] for text in paragraphs(template, macro, **shown)]
+    table = _titled_table(*lines[0])
+    for row in lines[1:]:
+        table.add_row(*row)
+    return table
+
+
+def _table_of_rows(
+    result: run_result.RunResult, macro: str, place: Place = SUMMARY, title: str = ""
+) -> Iterator[Table]:
+    if pairs := _rows(result, macro, place):
+        of_row = (result.verdict or run_result.Verdict()).neighbours
+        own = "The run, of the container itself" if of_row else "The run"
+        table = _titled_table(title or own, "", "")
+        for pair in pairs:
+            table.add_row(*map(Text, pair))
         yield table
+
+
+def _joint_tables(
+    every: Sequence[run_result.JointDemand], verdict: run_result.Verdict
+) -> Iterator[RenderableType]:
+    """Forces, and what bolts carry; one row a joint, from the floor up."""
+    joints = every
+    if len(every) > MOST_JOINTS:
+        chosen = {max(range(len(every)), key=lambda j: getattr(every[j], key)) for key in LARGEST}
+        joints = [every[j] for j in sorted(chosen)]
+    named: dict[str, Any] = {"joints": joints, "impact_note": impact_note(verdict), "unbolted": unbolted}
+    named["kilo"] = partial(in_figures, figures=FEW, factor=1e-3)
+    yield from (_table_by("joints.txt.j2", macro, **named) for macro in ("forces", "bolts"))
+    if any(joint.bolt_utilisation is not None for joint in joints):
+        yield Text("In parentheses: the larger tension over the capacity of a bolt.\n")
+    yield _note(verdict, "bolted_note", len(every) - len(joints), "joints")
+
+
+def _box_table(result: run_result.RunResult) -> Iterator[RenderableType]:
+    """One row a box, from the floor up; nothing of a container that moves as one body."""
+    verdict = result.verdict or run_result.Verdict()
+    if not (boxes := verdict.boxes or ()):
+        return
+    indices: Sequence[int] = range(len(boxes))
+    if len(boxes) > MOST_BOXES:
+        fallen = {k for k, box in enumerate(boxes) if box.fell}
+        indices = sorted(fallen | {most_moved(boxes, key) for key in BOX_FIGURES})
+    heads = (f">{figure.words} {figure.unit.name}" for figure in BOX_FIGURES.values())
+    table, cells = _titled_table("Boxes, from the floor up", "box", *heads, ""), box_rows(result)
+    for k in indices:
+        table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in cells[k]))
+    yield table
+    yield _note(verdict, "loose_note", len(boxes) - len(indices), "boxes")
+
+
+def _note(verdict: run_result.Verdict, which: str, left_out: int, of: str) -> Text:
+    more = f" {left_out} more {of} are in run.json." if left_out else ""
+    return Text(f"{sentence('joints.txt.j2', which, verdict=verdict)}{more}\n")
 
 
 def result_rows(result: run_result.RunResult) -> list[tuple[str, str]]:
@@ -195,7 +256,7 @@ def _rows(result: run_result.RunResult, macro: str, place: Place = SUMMARY) -> l
         bolts=bolt_forces(result),
         failed=sum(member.outcome is None for member in (verdict.band or run_result.Band()).members),
         to_overturn=run_result.to_overturn(bool(verdict.neighbours)),
-        figure_in_words=in_words,
+        figure_in_words=figure_in_words,
         motion_in_words=motion_in_words,
         seen=visible_number,
         CRUSHED=CRUSHED,
@@ -205,13 +266,8 @@ def _rows(result: run_result.RunResult, macro: str, place: Place = SUMMARY) -> l
 def _files(folder: Path) -> list[str]:
     """What to open; never wrapped, since people copy paths."""
     fields = folder / "fields" / "run.pvd"
-    paraview = (
-        [
-            "ParaView: open this file, Apply, Warp By Vector displacement_m",
-            "  (a smaller output.fields_s keeps more frames)",
-            f"  {fields}",
-        ]
-        if fields.exists()
-        else ["ParaView: no fields were written; output.fields_s > 0 writes them"]
-    )
+    paraview = ["ParaView: no fields were written; output.fields_s > 0 writes them"]
+    if fields.exists():
+        paraview = ["ParaView: open this file, Apply, Warp By Vector displacement_m"]
+        paraview += ["  (a smaller output.fields_s keeps more frames)", f"  {fields}"]
     return [*paraview, f"History: {folder / 'history.csv'}", f"All results: {folder / 'run.json'}"]

@@ -3,12 +3,16 @@
 A member behaves as the run does if its outcome is the same and neither rotation nor slip differs by an order of
 magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm. Of a loose
 stack this holds for every box and every joint, and a fall is the same if the same box falls.
+
+Along an axis the outcome changes at some values: a scan finds them, refinement locates them. An island narrower than
+the step of the scan may be missed.
 """
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -203,3 +207,54 @@ def _drawn_together(changes: Sequence[InputChange], differs: Sequence[bool]) -> 
     inputs = draws[0][0].inputs
     strongest = np.argsort(-apart)[:MOST_DRAWN]
     return [inputs[k] for k in strongest if apart[k] >= 0.5 * apart.max()]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """A bracket within which the outcome changes."""
+
+    low: float
+    high: float
+    below: str  #: outcome at the lower end: standing | overturned | failed
+    above: str
+
+    @property
+    def value(self) -> float:
+        """The middle of the bracket."""
+        return 0.5 * (self.low + self.high)
+
+
+def least_width(values: Sequence[float], resolution: float) -> float:
+    """Largest width of a bracket around zero, where no share of its value is meaningful."""
+    steps = [high - low for low, high in pairwise(values)]
+    return resolution * min([*steps, *(abs(value) for value in values if value)])
+
+
+def values_to_try(
+    known: Mapping[float, str], *, resolution: float, inner: int, least: float = 0.0
+) -> list[float]:
+    """Values within the brackets that are too wide; empty if all are narrow enough.
+
+    Args:
+        known: outcome by value.
+        resolution: largest width of a bracket, relative to its larger end (in magnitude).
+        inner: values tried within a bracket at a time.
+        least: width at which any bracket is narrow enough, from `least_width`.
+    """
+    return [
+        float(value)
+        for change in changes_of(known)
+        if change.high - change.low > max(resolution * max(abs(change.low), abs(change.high)), least)
+        for value in np.linspace(change.low, change.high, inner + 2)[1:-1]
+        if change.low < value < change.high  # not between two neighbouring floating-point numbers
+    ]
+
+
+def changes_of(known: Mapping[float, str]) -> list[Change]:
+    """Neighbouring values of different outcome."""
+    values = sorted(known)
+    return [
+        Change(low=low, high=high, below=known[low], above=known[high])
+        for low, high in pairwise(values)
+        if known[low] != known[high]
+    ]

@@ -27,7 +27,7 @@ from fem.results.kinds import SITE, ResultKind
 from fem.results.outcome import ENDINGS
 from fem.results.run_files import copy_data_files, require_free_name
 from fem.results.run_result import Band
-from fem.run.ranges import largest_bolt_forces
+from fem.run.words import largest_bolt_forces
 from fem.runtime.identity import command_line, versions
 from fem.runtime.own_files import copy_file, place_in
 from fem.runtime.user_files import real_path

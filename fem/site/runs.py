@@ -18,7 +18,7 @@ from fem.model.geometry import build_container
 from fem.model.resting import BodyAtRest
 from fem.model.static_checks import static_checks_of
 from fem.results.figures import Place, columns_of, types_of
-from fem.run.changed_runs import tolerance_of_draws
+from fem.run.band import tolerance_of_draws
 from fem.site.request import EMPTY, SiteRequest
 from fem.site.result import MOTIONS, REPEATED, SET, RunKey, SiteBody, SiteRun
 from fem.study.design import CaseMaker

@@ -20,8 +20,8 @@ from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
 from fem.html.page import text_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
-from fem.run.bracket import least_width, values_to_try
 from fem.run.expected import expected_words
+from fem.run.sureness import least_width, values_to_try
 from fem.runtime.identity import command_line
 from fem.runtime.own_files import remove_tree
 from fem.seismic.ground_motion import GroundMotion

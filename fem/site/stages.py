@@ -13,7 +13,7 @@ import numpy as np
 
 from fem.model.resting import KEPT, BodyAtRest
 from fem.results.outcome import Outcome
-from fem.run.bracket import values_to_try
+from fem.run.sureness import values_to_try
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import MotionTarget
 from fem.seismic.artificial import artificial_motions

@@ -23,8 +23,7 @@ from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS, BoxResult
 from fem.results.run_result import Verdict
 from fem.run.card import line as line_of_card
-from fem.run.checks import WantedChecks
-from fem.run.compute import Run, compute_on, require_case
+from fem.run.compute import Run, WantedChecks, compute_on, require_case
 from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate

@@ -24,17 +24,20 @@ from fem.model.motion import build_motions
 from fem.model.support import normal_penalty
 from fem.results.figures import BOXES, FELL_FIRST, RUN_COLUMNS, TURNED, RunFigures, types_of
 from fem.results.outcome import Ending, ending_of
-from fem.run.bracket import Change, changes_of, least_width, values_to_try
-from fem.run.solve import chosen_values
+from fem.run.compute import chosen_values
 from fem.run.sureness import (
     OTHER_END,
     REGIME_UNSURE,
     SAME,
     SURE,
     UNSURE,
+    Change,
+    changes_of,
     deciding_inputs,
     difference,
     how_sure,
+    least_width,
+    values_to_try,
 )
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.study.axes import Axis, lines_along, shape_of
@@ -304,7 +307,6 @@ class Copies:
 
 
 def _size(axes: Sequence[Axis], reach: int = 1) -> tuple[int, ...]:
-    """Size of the neighbourhood along each axis."""
     return tuple(2 * reach + 1 if axis.is_numeric else 1 for axis in axes)
 
 

@@ -35,7 +35,7 @@ from fem.case.strength import scaled_motion
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.model import Model, build_model
-from fem.run.checks import with_band
+from fem.run.band import with_band
 from fem.run.recorder import Recorder
 from fem.run.rigid_check import block_of
 from fem.run.run import RunOptions, run_case

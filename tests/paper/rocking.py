@@ -14,7 +14,7 @@ from runs import Finished
 
 from contact.reference.rigid_block import RigidBlock
 from fem.model.static_checks import period_eq2, period_eq3
-from fem.run.bracket import changes_of
+from fem.run.sureness import changes_of
 
 FREE = {"motion.kind": "none", **NO_SLIDING}
 RELEASES = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)  #: over the slenderness angle

@@ -14,11 +14,10 @@ from fem.case.uncertainty import InputChange
 from fem.model.geometry import build_container
 from fem.model.model import static_checks_of
 from fem.results.run_result import ChangedRun, RunResult, Verdict
-from fem.run.card import card_of
+from fem.run.card import card_of, warnings_for
 from fem.run.described import governing, links_in_words
 from fem.run.summary import brief_summary, plain_summary
 from fem.run.sureness import judged
-from fem.run.warnings import warnings_for
 
 # The stack of four under 4.0 m/s2: 40 kN against 39.24 kN, 80 kNm against 53.955 kNm (the paper, g = 9.81).
 CASE = load_case("seed_stack_plateau")

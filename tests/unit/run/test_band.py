@@ -15,9 +15,8 @@ from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
 from fem.results.reader import open_run
 from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResult, Verdict
-from fem.run import checks
-from fem.run.changed_runs import DRAWN_TOLERANCE, run_changes
-from fem.run.checks import plan_of, wants_band
+from fem.run import band
+from fem.run.band import DRAWN_TOLERANCE, plan_of, run_changes, wants_band
 from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
@@ -148,21 +147,21 @@ class TestWhatDoesNotFitTheTime:
         return plan_of(model, result("rock", numerics=self.numerics(steps)))
 
     def test_draws_are_left_out_before_changes_of_one_input(self):
-        plan = self.plan(30_000)
-        assert {one.kind for one in plan.left_out} == {"draw"}
-        assert {one.kind for one in plan.changes} == {"one", "pair", "draw"}
+        changes, left_out = self.plan(30_000)
+        assert {one.kind for one in left_out} == {"draw"}
+        assert {one.kind for one in changes} == {"one", "pair", "draw"}
 
     def test_of_a_dear_band_one_change_of_each_of_the_first_inputs_stays(self):
-        plan = self.plan(10_000_000)
-        assert len(plan.changes) == checks.LEAST_MEMBERS
-        inputs = [one.inputs for one in plan.changes]
+        changes, _ = self.plan(10_000_000)
+        assert len(changes) == band.LEAST_MEMBERS
+        inputs = [one.inputs for one in changes]
         assert len(set(inputs)) == len(inputs) and inputs[0] == ("contact.mu_kinetic",)
-        assert plan.changes[0].label == "contact.mu_kinetic = 0.4"
+        assert changes[0].label == "contact.mu_kinetic = 0.4"
 
     def test_a_verdict_is_not_sure_where_changes_were_left_out(self, tmp_path, monkeypatch):
-        monkeypatch.setattr(checks, "BUDGET_S", 0.0)
+        monkeypatch.setattr(band, "BUDGET_S", 0.0)
         found = verdict_with_band(tmp_path, load_case("rocking", SHORT))
-        assert found.sure == "unsure" and len(found.band.members) == 1 + checks.LEAST_MEMBERS
+        assert found.sure == "unsure" and len(found.band.members) == 1 + band.LEAST_MEMBERS
         assert found.band.draws_left_out == 32
 
 
@@ -170,7 +169,7 @@ class TestWhatDoesNotFitTheTime:
 def test_a_flat_base_near_uplift_is_tried_on_a_stiff_floor(share, members):
     case = load_case("seed_stack", ["solver.model=rigid", COARSE, "floor.kind=rigid", "support.kind=flat"])
     model = build_model(case)
-    floors = [one for one in plan_of(model, result("rock", share)).changes if one.kind == "floor"]
+    floors = [one for one in plan_of(model, result("rock", share))[0] if one.kind == "floor"]
     assert len(floors) == members
     for one in floors:
         assert one.values["contact.normal_penalty_Pa_m"] == pytest.approx(30.0 * model.penalty)

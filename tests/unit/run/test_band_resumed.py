@@ -11,7 +11,7 @@ import fem.run.simulation
 from fem.__main__ import main
 from fem.case.case import case_hash
 from fem.results.kinds import read_result
-from fem.run import changed_runs
+from fem.run import band
 
 SHORT = (
     "solver.duration_s=0.5",
@@ -39,8 +39,8 @@ def one_by_one():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fem.run.simulation, "SLICE_REDUCED", 0.2)
         patch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
-        patch.setattr(changed_runs, "cores", lambda: 1)
-        patch.setattr(changed_runs, "SHORT_S", 0.0)  # each member is stepped in pauses and noted
+        patch.setattr(band, "cores", lambda: 1)
+        patch.setattr(band, "SHORT_S", 0.0)  # each member is stepped in pauses and noted
         yield
 
 
@@ -53,7 +53,7 @@ def whole(tmp_path_factory):
 
 
 def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monkeypatch, whole):
-    stepping, begun, cuts = changed_runs.simulate, [], 0
+    stepping, begun, cuts = band.simulate, [], 0
 
     def step(model, recorder, **options):
         begun.append(case_hash(model.case))
@@ -61,7 +61,7 @@ def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monk
             return one_slice(stepping, model, recorder, **options)
         return stepping(model, recorder, **options)
 
-    monkeypatch.setattr(changed_runs, "simulate", step)
+    monkeypatch.setattr(band, "simulate", step)
     finished = []
     while main(command(tmp_path / "cut", *RIGID)) == 4:
         assert read_result(tmp_path / "cut" / "run.json")["verdict"]["band"] is None
@@ -74,7 +74,7 @@ def test_a_band_cut_off_after_every_member_is_the_band_left_alone(tmp_path, monk
 
 def test_members_that_cannot_be_trusted_are_reported_and_computed_again(tmp_path, monkeypatch, capsys, whole):
     with monkeypatch.context() as patch:
-        patch.setattr(changed_runs, "simulate", partial(one_slice, changed_runs.simulate))
+        patch.setattr(band, "simulate", partial(one_slice, band.simulate))
         assert main(command(tmp_path / "cut", *RIGID)) == 4
     (tmp_path / "cut" / "band.json").write_text('{"case_hash": "theirs"}')
     capsys.readouterr()

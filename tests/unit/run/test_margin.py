@@ -14,7 +14,7 @@ from fem.case.uncertainty import all_changes, as_changed
 from fem.model.model import build_model
 from fem.results.outcome import Ending
 from fem.results.run_result import Band, ChangedRun, Governing, Margin, Verdict
-from fem.run import changed_runs
+from fem.run import band
 from fem.run import margin as search
 from fem.run.compute import Run
 
@@ -67,17 +67,17 @@ def test_islands_are_found():
 def test_the_margin_does_not_depend_on_the_cores_and_what_governs_is_a_draw_that_overturns(monkeypatch):
     for name in ("OWN_S", "DRAWN_S"):
         monkeypatch.setattr(search, name, 0.2)
-    monkeypatch.setattr(changed_runs, "cores", lambda: 2)
+    monkeypatch.setattr(band, "cores", lambda: 2)
     run = computed("uncertainty.draws=4", "solver.duration_s=6", band=None)
     margin, own = run.verdict.margin, run.case
-    monkeypatch.setattr(changed_runs, "cores", lambda: 1)
+    monkeypatch.setattr(band, "cores", lambda: 1)
     again = search.margin_of(search.build_model(own), run.typed_result, drawn=True, stop=lambda: False)
     assert margin == again
     governing = margin.governing
     assert governing.of == "variations" and governing.factor < margin.factor
     assert governing.variations == margin.draws + margin.draws_failed > 0
     model = search.build_model(own)
-    coarse = {"solver.energy_tolerance": changed_runs.DRAWN_TOLERANCE}
+    coarse = {"solver.energy_tolerance": band.DRAWN_TOLERANCE}
     ends = [
         fem.compute(
             own.replace(as_changed(own, {**draw.values, **scaled_motion(own, governing.factor), **coarse})),

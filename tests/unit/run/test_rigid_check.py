@@ -11,7 +11,7 @@ import pytest
 from fem.case.case import load_case
 from fem.model.model import Model, build_model
 from fem.results.history import read_history
-from fem.run.checks import wants_rigid_check
+from fem.run.compute import wants_rigid_check
 from fem.run.recorder import Recorder
 from fem.run.rigid_check import RigidCheck, block_of, check_against_rigid_block, first_peaks, floor_of
 from fem.run.run import RunOptions, run_case

@@ -8,8 +8,8 @@ import fem
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.model.motion import build_motions
+from fem.run.compute import resolve
 from fem.run.described import governing
-from fem.run.solve import resolve
 from fem.run.summary import run_found
 
 SQUAT = {

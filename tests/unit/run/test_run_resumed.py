@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from interrupted_runs import COARSE, FLAT_SHELL, one_slice, require_same
 
+import fem.run.compute
 import fem.run.simulation
-import fem.run.solve
 from fem.case.case import load_case
 from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
@@ -78,11 +78,11 @@ def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeyp
     monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
     monkeypatch.setattr(fem.run.simulation, "AFTERMATH_SLICE", 0.15)
     run(tmp_path / "whole", name, overrides)
-    stepping = fem.run.solve.simulate
+    stepping = fem.run.compute.simulate
     cuts = 0
     while True:
         # every beginning steps one slice, so every state between slices has been through a checkpoint
-        monkeypatch.setattr(fem.run.solve, "simulate", partial(one_slice, stepping))
+        monkeypatch.setattr(fem.run.compute, "simulate", partial(one_slice, stepping))
         if run(tmp_path / "cut", name, overrides, resume=True).status != "interrupted":
             break
         cuts += 1

@@ -10,9 +10,8 @@ from fem.results.run_result import (
     RunResult,
     Verdict,
 )
-from fem.run.card import line
+from fem.run.card import line, warnings_for
 from fem.run.sureness import judged
-from fem.run.warnings import warnings_for
 
 MU, SLIP, PENALTY = "contact.mu_kinetic", "contact.weakening_m", "contact.normal_penalty_Pa_m"
 OWN = {"outcome": "slide-rock", "rotation_ratio": 0.2, "max_slip_m": 0.2, "residual_slip_m": -0.2}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from study_words import KINDS, MU, PEAK, WIDTH, G, ensemble_of, over
 
-from fem.run.bracket import changes_of, least_width, values_to_try
+from fem.run.sureness import changes_of, least_width, values_to_try
 from fem.study.answers import Answer, Trial, answer_axis, answer_of, answers_csv, is_rising, sweep_answer
 from fem.study.axes import Axis
 from fem.study.sweep_table import BAND, FOUND, open_sweep

@@ -19,7 +19,7 @@ from fem.case.tables.neighbours import case_of
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.model.motion import build_motions
-from fem.run.solve import chosen_values
+from fem.run.compute import chosen_values
 from fem.run.verdict import verdict_of
 
 MASS, WIDTH, SPEED, GRAVITY = 1e4, 1.1, 0.5, 9.81

@@ -1,9 +1,8 @@
-"""Runs of a case with some inputs changed, side by side on the container of the run.
+"""The band of a run: the run repeated with its unknown inputs changed, side by side on its container.
 
-A member of a band is such a run. Those of rigid and reduced models that take seconds
-run without a history; of a bolted stack those that change one unknown input have one, for the forces in its joints.
-Long ones and those of the `full` model have one. How many fit a budget follows from the sizes and steps of the run,
-not from the clock, so that a resumed or repeated study is the same.
+Members of rigid and reduced models that take seconds run without a history; of a bolted stack those that change one
+unknown input have one, for the forces in its joints. Long ones and those of the `full` model have one. How many fit a
+budget follows from the sizes and steps of the run, not from the clock, so that a resumed or repeated study is the same.
 """
 
 import time
@@ -16,7 +15,7 @@ from typing import Any
 
 from fem.case.case import Case
 from fem.case.tables.input_ranges import SUPPORT, TOLERANCE, Value
-from fem.case.uncertainty import InputChange, as_changed
+from fem.case.uncertainty import InputChange, all_changes, as_changed, largest_first, stiff_floor
 from fem.model.container import Container, adapted_container, discretise
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
@@ -25,13 +24,16 @@ from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.figures import FELL_FIRST, Place
 from fem.results.json_block import to_json
-from fem.results.run_result import ChangedRun, JointDemand, Numerics, Verdict
-from fem.run.ranges import largest_bolt_forces
+from fem.results.outcome import Outcome
+from fem.results.run_result import ChangedRun, JointDemand, Numerics, RunResult, StaticResult, Verdict
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
+from fem.run.sureness import judged, static_use
 from fem.run.verdict import joint_demands, verdict_of
+from fem.run.words import largest_bolt_forces
 from fem.runtime.identity import program_identity
 from fem.runtime.memory import threads_of_rigid_runs
+from fem.runtime.progress import Reporter
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_json
 from fem.solid.nodal_body import full_model_memory
@@ -43,16 +45,19 @@ COST = 1.2  #: of a changed run over the run: stiffer floors and tighter toleran
 STEP_COST = (0.4e-6, 7e-9, 5e-9)
 DRAWN_TOLERANCE = 10.0  #: energy tolerance of draws at least, as of maps: 0.01 to 10 give the same outcomes
 STORED_S = 1.0  #: wall time between two notes of finished runs
+#: share of a static limit from which a container at rest may be brought to move by what is not known
+NEAR_LIMIT = 0.7
+MOST_LIFTING = 0.3  #: vertical acceleration over g up to which that holds
+#: shares of the uplift acceleration between which a soft bed may rock a container that a rigid floor would not
+BELOW_UPLIFT = (0.85, 1.0)
+#: processor time for the members, by the estimate of `cost_of` [s]; members that are computed in any case
+BUDGET_S, LEAST_MEMBERS = 30.0, 6
 
 
 class ChangedRunsFile:
     """The finished runs of a file; its methods may be called by several threads.
 
-    Args:
-        path: of the file.
-        case_hash: of the case that is changed.
-        write: replaces the file by a text; an OSError of it ends the work.
-        message: receives why a file is refused.
+    `write` replaces the file by a text, and an OSError of it ends the work; `message` receives why a file is refused.
     """
 
     def __init__(
@@ -75,11 +80,7 @@ class ChangedRunsFile:
             return []
 
     def store(self, runs: Sequence[ChangedRun]) -> None:
-        """Store the finished runs, in an order that does not depend on which were finished first.
-
-        Raises:
-            OSError: the file cannot be written, or the folder was lost.
-        """
+        """Store the finished runs, in an order that does not depend on which were finished first."""
         ordered = sorted(runs, key=lambda run: repr(key_of(run.values)))
         self._write(to_json(self._owner | {"members": [run.to_json() for run in ordered]}))
 
@@ -105,11 +106,7 @@ class Shared:
     one_at_a_time: Lock  #: builds
 
     def container_of(self, case: Case) -> Container:
-        """The container of a changed case, from one that is built, where it stands on the same points.
-
-        Raises:
-            CaseError, MeshError: bad input.
-        """
+        """The container of a changed case, from one that is built, where it stands on the same points."""
         with self.one_at_a_time:
             for own, container in self.built:
                 adapted = adapted_container(case, container, own)
@@ -167,9 +164,7 @@ def run_changes(
     """One run for each change, side by side; a problem of any kind is its error, never an outcome.
 
     Args:
-        model: of the run; the mesh and modes of its container serve every change.
-        changes: what to change.
-        numerics: of the run.
+        model: of the run, whose `numerics` these are; the mesh and modes of its container serve every change.
         stop: called in pauses; true ends the work.
         kept_in: a file of finished runs, to resume from and to add to.
         inner_forces: find stresses and the forces in joints of a stack, which takes twice as long.
@@ -239,7 +234,7 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
             status = "completed" if verdict.overturned_at_s is None else "overturned"
             if error is not None:
                 return _without_outcome(change, "failed", error)
-            return changed_run(change, model, status, verdict, None)
+            return _changed_run(change, model, status, verdict, None)
         # the forces in its joints follow from mass and weight
         same_load = model.container is run.container and case.floor.slope == run.case.floor.slope
         joints = shared.joints if same_load or shared.joints is None else joints_of(model)
@@ -254,10 +249,10 @@ def _run_changed(run: Model, change: InputChange, shared: Shared, stop: Callable
     history = recorder.history()
     verdict = verdict_of(model, history, recorder.largest_von_mises)
     demands = joint_demands(model, history) if shared.short else None
-    return changed_run(change, model, ending.status, verdict, demands)
+    return _changed_run(change, model, ending.status, verdict, demands)
 
 
-def changed_run(
+def _changed_run(
     change: InputChange | None,
     model: Model,
     status: str,
@@ -267,7 +262,7 @@ def changed_run(
     """The changed run of a verdict; without a change, the run itself."""
     tension, shear = largest_bolt_forces(joints) if joints else (None, None)
     return replace(
-        _without_outcome(change, status),
+        ChangedRun(status=status) if change is None else _without_outcome(change, status),
         normal_penalty_Pa_m=None if model.case.floor.is_slab else model.penalty,
         damping_ratio=model.damping_ratio,
         outcome=verdict.outcome,
@@ -277,9 +272,85 @@ def changed_run(
     )
 
 
-def _without_outcome(change: InputChange | None, status: str, error: str | None = None) -> ChangedRun:
-    if change is None:
-        return ChangedRun(status=status)
+def _without_outcome(change: InputChange, status: str, error: str | None = None) -> ChangedRun:
     return ChangedRun(
         change=change.label, kind=change.kind, values=dict(change.values), status=status, error=error
     )
+
+
+def wants_band(choice: bool | None, case: Case, result: RunResult) -> bool:
+    """Whether a finished run gets a band: as chosen, else unless it rests far below the static limits.
+
+    A run of the `full` model, whose band would take several times as long as the run, and a run that is not valid get
+    one only on request.
+    """
+    if choice is not None:
+        return choice
+    outcome = (result.verdict or Verdict()).outcome
+    if outcome in (None, Outcome.INVALID):
+        return False
+    return case.solver.model != "full" and not rests_far_below_limits(case, result)
+
+
+def rests_far_below_limits(case: Case, result: RunResult) -> bool:
+    """True if the run rests and no unknown input could use up the static reserve; where all that acts is in the rule.
+
+    It does not cover the joints of a loose stack, a neighbour, a push at the start, a floor that moves up by a part of
+    gravity, or a range that the case states, which may be wider than the reserve.
+    """
+    beyond_rule = case.container.is_loose or case.neighbour or case.initial.is_pushed
+    if beyond_rule or any(isinstance(span, list) for _, span in case.uncertainty):
+        return False
+    used, lifting = static_use(result), (result.static or StaticResult()).ruling.utilisation_lifting or 0.0
+    rests = (result.verdict or Verdict()).outcome == Outcome.REST
+    return rests and used is not None and used < NEAR_LIMIT and lifting <= MOST_LIFTING
+
+
+def plan_of(model: Model, result: RunResult) -> tuple[list[InputChange], list[InputChange]]:
+    """The members of a band, those that decide most often first; and those for which there is no time."""
+    case, penalty = model.case, model.penalty
+    use, (low, high) = (result.static or StaticResult()).ruling.utilisation_overturning or 0.0, BELOW_UPLIFT
+    bears = case.support.kind != "corners"
+    soft = bears and low <= use <= high
+    singles, pairs, draws = all_changes(case, penalty)
+    ordered = [stiff_floor(case, penalty)] * soft + [*largest_first(singles), *pairs, *draws]
+    cost = cost_of(result.numerics or Numerics())
+    most = LEAST_MEMBERS if case.solver.model == "full" else max(LEAST_MEMBERS, int(BUDGET_S / cost))
+    return ordered[:most], ordered[most:]
+
+
+def with_band(
+    model: Model,
+    result: RunResult,
+    *,
+    stop: Callable[[], bool],
+    reporter: Reporter | None = None,
+    kept_in: ChangedRunsFile | None = None,
+    inner_forces: bool = True,
+) -> Verdict | None:
+    """Compute the members of a band side by side and judge the verdict of the run by them.
+
+    Args:
+        model, result: of the run, which is itself a member.
+        stop: called in pauses; true ends the band.
+        reporter: is told how many members there are.
+        kept_in: the file of its finished members, to resume from.
+        inner_forces: as for `run_changes`.
+
+    Returns:
+        The verdict with its band, or None if it was stopped.
+
+    Raises:
+        OSError: the file could not be written; the other members have stopped then.
+    """
+    (changes, left_out), numerics = plan_of(model, result), result.numerics or Numerics()
+    if reporter is not None:
+        reporter.message(f"band: {len(changes)} runs with the unknown inputs varied")
+    members = run_changes(
+        model, changes, numerics=numerics, stop=stop, kept_in=kept_in, inner_forces=inner_forces
+    )
+    if any(member.status == "interrupted" for member in members):
+        return None
+    verdict = result.verdict or Verdict()
+    own = _changed_run(None, model, result.status, verdict, result.joints)
+    return judged(verdict, [own, *members], changes, left_out, width=model.container.mesh.width)
