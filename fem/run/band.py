@@ -171,9 +171,7 @@ def run_changes(
 
     Returns:
         The runs in the order of the changes; those not finished have the status "interrupted".
-
-    Raises:
-        OSError: the file could not be written; the other runs have stopped then.
+        An OSError where the file cannot be written; the other runs have stopped then.
     """
     case = model.case
     short = case.solver.model != "full" and cost_of(numerics) <= SHORT_S
@@ -338,10 +336,7 @@ def with_band(
         inner_forces: as for `run_changes`.
 
     Returns:
-        The verdict with its band, or None if it was stopped.
-
-    Raises:
-        OSError: the file could not be written; the other members have stopped then.
+        The verdict with its band, or None if it was stopped. An OSError as for `run_changes`.
     """
     (changes, left_out), numerics = plan_of(model, result), result.numerics or Numerics()
     if reporter is not None:

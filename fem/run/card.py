@@ -242,10 +242,8 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
     own_dashpot = {case.contact_damping_ratio: verdict.rotation_ratio}
     varied = {ratio: run.rotation_ratio for ratio, run in _changed_alone(verdict, DASHPOT).items()}
     # dashpot over spring, of the whole mass on half the base's stiffness: see contact.penalty.relaxation_time
-    frequency, ratio = (
-        numerics.contact_frequency_Hz,
-        numerics.contact_damping_ratio or case.contact.damping_ratio,
-    )
+    frequency = numerics.contact_frequency_Hz
+    ratio = numerics.contact_damping_ratio or case.contact.damping_ratio
     return paragraphs(
         "warnings.txt.j2",
         **LIMITS,

@@ -65,8 +65,7 @@ if TYPE_CHECKING:
 def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> Case:
     """The case with every "auto" replaced by the value chosen; running it again gives the same result.
 
-    Raises:
-        CaseError: a motion that the given step would step over.
+    A CaseError where the given step would step over a motion.
     """
     chosen = chosen_values(case, mesh, motions)
     return case.with_chosen(chosen) if chosen else case
@@ -76,9 +75,6 @@ def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, Ba
     """What is chosen for a case where it says "auto", by dotted key.
 
     A duration that depends on when the container comes to rest stays "auto".
-
-    Raises:
-        CaseError: a motion that the given step would step over.
     """
     chosen: dict[str, Any] = {}
     longest = longest_run(case, *motions)
@@ -93,24 +89,21 @@ def chosen_values(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, Ba
         fastest = max(static.frequency_parameter for static in each)
         chosen["solver.step_s"], _ = largest_step_of(case, fastest, longest, *motions)
     if case.output.fields_s == "auto":
-        nodes = node_count(mesh, case.solver.order)
-        chosen["output.fields_s"] = frame_interval(case, nodes, longest)
+        chosen["output.fields_s"] = frame_interval(case, node_count(mesh, case.solver.order), longest)
     return chosen
 
 
 def begun(model: Model, case_hash: str) -> RunResult:
     """The result of a run that is to be stepped: what is known before."""
-    case = model.case
+    case, static, box = model.case, model.static.to_result(), model.case.container
     return RunResult(
         status="running",
         case=case.name,
         title=case.title,
         overrides=case.overrides or None,
         case_hash=case_hash,
-        static=(static := model.static.to_result()),
-        sides=sides_of(case.stack[0].width, case.container.depth_m, static)
-        if case.container.mesh_file is None
-        else None,
+        static=static,
+        sides=sides_of(case.stack[0].width, box.depth_m, static) if box.mesh_file is None else None,
         motion=motion_result(case, model.motion, model.vertical),
         floor=floor_result(case, model.container.mesh, model.static),
         versions=versions(),
@@ -133,47 +126,38 @@ def stepped(
         model: from its present state on; result: begun.
         recorder, reporter, stop, save, progress: as for `fem.run.simulation.simulate`.
     """
-    ending = simulate(model, recorder, reporter=reporter, stop=stop, save=save, progress=progress)
-    history = recorder.history()
-    stress = recorder.largest_von_mises if model.case.solver.model != "rigid" else None
+    end = simulate(model, recorder, reporter=reporter, stop=stop, save=save, progress=progress)
+    case, container, history = model.case, model.container, recorder.history()
+    stress = recorder.largest_von_mises if case.solver.model != "rigid" else None
     verdict = verdict_of(model, history, stress)
-    stops, ties = _link_results(model)
+    heights = heights_of_links(case, container.elements.nodes[container.nodes])
+    links = []
+    for link, height, record in zip(case.links, heights, model.run.links[len(case.neighbour) :], strict=True):
+        whole = math.isinf(record.broken_at)
+        links.append(
+            LinkResult(
+                side=link.side,
+                height_m=height,
+                neighbour=link.neighbour if isinstance(link, TieTable) else None,
+                max_force_N=float(record.max_force),
+                hits=int(record.hits),
+                largest_closing_velocity_m_s=float(record.largest_closing_velocity),
+                gap_left_m=float(record.least_gap) if whole and math.isfinite(record.least_gap) else None,
+                broken_at_s=None if whole else float(record.broken_at),
+            )
+        )
     result = replace(
         result,
-        status=ending.status,
-        verdict=verdict if ending.error is None else replace(verdict, outcome=None),
+        status=end.status,
+        verdict=verdict if end.error is None else replace(verdict, outcome=None),
         joints=joint_demands(model, history),
-        stops=stops,
-        ties=ties,
+        stops=tuple(links[: len(case.stop)]) or None,
+        ties=tuple(links[len(case.stop) :]) or None,
         energy=energy_of(model),
-        numerics=numerics_of(model, ending.stepping_cpu_s),
-        error=ending.error,
+        numerics=numerics_of(model, end.stepping_cpu_s),
+        error=end.error,
     )
     return result, history
-
-
-def _link_results(model: Model) -> tuple[tuple[LinkResult, ...] | None, tuple[LinkResult, ...] | None]:
-    """What stops and ties did in a model that was stepped, in the order of the case; None where there are none."""
-    case, container = model.case, model.container
-    records = model.run.links[len(case.neighbour) :]
-    heights = heights_of_links(case, container.elements.nodes[container.nodes])
-    results = [
-        LinkResult(
-            side=link.side,
-            height_m=height,
-            neighbour=link.neighbour if isinstance(link, TieTable) else None,
-            max_force_N=float(record.max_force),
-            hits=int(record.hits),
-            largest_closing_velocity_m_s=float(record.largest_closing_velocity),
-            gap_left_m=float(record.least_gap)
-            if math.isinf(record.broken_at) and math.isfinite(record.least_gap)
-            else None,
-            broken_at_s=None if math.isinf(record.broken_at) else float(record.broken_at),
-        )
-        for link, height, record in zip(case.links, heights, records, strict=True)
-    ]
-    stops = len(case.stop)
-    return tuple(results[:stops]) or None, tuple(results[stops:]) or None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,10 +167,8 @@ class WantedChecks:
     check_rigid: bool = False
     band: bool | None = None  #: None: wherever it takes no longer than it is worth
     margin: bool | None = None  #: None: wherever it takes seconds, and a band is not refused
-    analytic: bool = (
-        False  #: whether the analytic block under the same motion is followed, where there is one
-    )
-    inner_forces: bool = True  #: whether members of a band find stresses and the forces in joints of a stack
+    analytic: bool = False  #: follow the analytic block under the same motion, where there is one
+    inner_forces: bool = True  #: let members of a band find stresses and the forces in joints of a stack
 
 
 def add_checks(
@@ -203,10 +185,8 @@ def add_checks(
 
     Args:
         result, model: of the run; history_of: gives its samples.
-        wanted: what is asked for.
         members: the file of the finished members of a band.
-        reporter: of band and margin.
-        stop: called in pauses; true ends them.
+        stop: called in pauses; true ends band and margin.
 
     Returns:
         The result with them, the same object where nothing was added; and the comparison with the rigid block, where
@@ -264,11 +244,10 @@ def lacking(result: RunResult, case: Case, wanted: WantedChecks) -> set[str]:
 
 def has_analytic_block(case: Case) -> bool:
     """Whether a case is a block on rigid ground whose motion formulas give: harmonic, a pulse, or a release."""
-    alone = not (case.links or case.neighbour or case.container.is_loose or case.floor.is_slab)
-    moves = case.motion.kind in ("harmonic", "pulse") or case.initial.rotation_rad != 0.0
-    return (
-        alone and moves and case.support.kind == "corners" and not case.rolls and case.motion.kind != "table"
-    )
+    alone = not (case.links or case.neighbour or case.container.is_loose or case.floor.is_slab or case.rolls)
+    release = case.motion.kind == "none" and case.initial.rotation_rad != 0.0
+    moves = case.motion.kind in ("harmonic", "pulse") or release
+    return alone and moves and case.support.kind == "corners"
 
 
 def wants_rigid_check(choice: bool, case: Case) -> bool:
@@ -375,11 +354,7 @@ def compute(
 
 
 def require_case(given: object) -> None:
-    """Refuse what is no case, such as its name.
-
-    Raises:
-        CaseError: it is none.
-    """
+    """Refuse what is no case, such as its name, by a CaseError."""
     if not isinstance(given, Case):
         raise CaseError(f"a case from fem.load_case or fem.case_from is needed, got {type(given).__name__}")
 
@@ -387,8 +362,7 @@ def require_case(given: object) -> None:
 def compute_on(container: Container | None, case: Case, wanted: WantedChecks) -> Run:
     """Compute a case in memory, on its container where that is built already; where a signal stops it, a part of that.
 
-    Raises:
-        CaseError, MeshError: as `compute`.
+    Errors as `compute`.
     """
     use_one_blas_thread()
     watch, silent = Stopwatch(), Reporter()

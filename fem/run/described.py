@@ -60,13 +60,9 @@ def doubts(motion: MotionResult, gravity: float) -> tuple[str, ...]:
 
 def part_covered(motion: MotionResult) -> str:
     """The part of its motion that a run covers, with a peak that is not in it; empty where it covers the whole."""
-    cut, upward = motion, motion.vertical
-    if (
-        upward is not None
-        and upward.covered is not None
-        and (motion.covered is None or upward.covered < motion.covered)
-    ):
-        cut = upward
+    upward = motion.vertical
+    known = [one for one in (motion, upward) if one is not None and one.covered is not None]
+    cut = min(known, key=lambda one: one.covered or 0.0, default=motion)
     if cut.covered is None or cut.duration_s is None or cut.covered >= 1.0 - 1e-9:
         return ""
     part = f"{cut.covered * cut.duration_s:.4g} of {cut.duration_s:.4g} s"
@@ -126,21 +122,14 @@ def sides_of(width: float, depth: float, static: StaticResult) -> Sides | None:
 
     Sliding is the same in both; the capacity against overturning is in proportion to the width.
     """
-    own = static.ruling
-    use = own.utilisation_overturning
+    sliding, use = static.ruling.utilisation_sliding, static.ruling.utilisation_overturning
     if width == depth or not use:
         return None
-    planes = (
-        Plane(
-            width_m=size,
-            utilisation_sliding=own.utilisation_sliding,
-            utilisation_overturning=use * width / size,
-        )
+    computed, other = (
+        Plane(width_m=size, utilisation_sliding=sliding, utilisation_overturning=use * width / size)
         for size in (width, depth)
     )
-    return Sides(
-        governing="computed" if width < depth else "other", computed=next(planes), other=next(planes)
-    )
+    return Sides(governing="computed" if width < depth else "other", computed=computed, other=other)
 
 
 def sides_in_words(sides: Sides | None) -> str:

@@ -40,36 +40,22 @@ class DrawnLink:
 
 
 def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, ...]:
-    """The stops and ties of a case, but for stops that are far away.
-
-    Args:
-        case: its links.
-        broken_s: when each broke; empty: none did [s].
-    """
+    """The stops and ties of a case, but for stops that are far away; when each broke, if any did [s]."""
     row, tallest = case.row, case.stack[-1].top
     axes = places_of(case, [alone.stack[0].width for alone in row]).x if row else (0.0,)
     drawn = []
     for link, until in zip(case.links, broken_s or [math.inf] * len(case.links), strict=True):
         side = axes[holder_of(case, link)] + side_of(case, link)
         outward = -1.0 if link.side == "left" else 1.0
-        if not isinstance(link, StopTable):
-            outer, anchor = side, 0.0
-            if link.to == "wall":
-                outer, anchor = side + outward * TO_WALL * tallest, link.height_m
-            drawn.append(
-                DrawnLink(
-                    x=side,
-                    outer=outer,
-                    height=link.height_m,
-                    anchor=anchor,
-                    outward=outward,
-                    until=until,
-                )
-            )
-        elif link.gap_m <= REACH * tallest:
+        x, outer, height, anchor = side, side, link.height_m, None if isinstance(link, StopTable) else 0.0
+        if isinstance(link, StopTable):
+            if link.gap_m > REACH * tallest:
+                continue
             x, thick = side + outward * link.gap_m, outward * WALL * tallest
-            height = max(link.height_m, abs(thick))
-            drawn.append(DrawnLink(x=x, outer=x + thick, height=height, outward=outward, until=until))
+            outer, height = x + thick, max(height, abs(thick))
+        elif link.to == "wall":
+            outer, anchor = side + outward * TO_WALL * tallest, height
+        drawn.append(DrawnLink(x=x, outer=outer, height=height, anchor=anchor, outward=outward, until=until))
     return tuple(drawn)
 
 

@@ -40,12 +40,6 @@ def of_its_band_s(run_s: float) -> float:
     return min(BAND_RUNS * run_s, MOST_OF_BAND_S)
 
 
-def with_band_s(case: Case, cores: int = 1) -> float:
-    """Wall time of a run with its band and margin, which are shared by the cores [s]."""
-    run_s = expected_s(case)
-    return run_s + of_its_band_s(run_s) / cores
-
-
 def expected_words(seconds: float, cores: int = 1) -> str:
     """A wall time of which one figure is known, and the cores that it is for: "roughly 2 min 00 s on 2 cores"."""
     on = f" on {cores} cores" if cores > 1 else ""

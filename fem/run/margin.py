@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import cache
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 from fem.case.case import Case, CaseError
@@ -84,20 +84,6 @@ class Search:
         """Neighbouring factors up to one of those tried."""
         return [(low, high) for low, high in pairwise(sorted(self.known)) if high <= up_to]
 
-    def weight(self, low: float, high: float) -> float:
-        """How much a step is worth to be halved."""
-        turned = max(min(1.0, self.known[factor].turned) for factor in (low, high))
-        return math.log(high / low) * (STILL + turned)
-
-    def scan(self, factors: Sequence[float], pool: Executor, side_by_side: int) -> None:
-        """Try rising factors; none above one that destroys a corner counts."""
-        for begin in range(0, len(factors), side_by_side):
-            some = factors[begin : begin + side_by_side]
-            self.known |= dict(zip(some, pool.map(self.trial, some), strict=True))
-            if (last := self.first(Ending.INVALID)) is not None:
-                self.known = {factor: tried for factor, tried in self.known.items() if factor <= last}
-                return
-
     def rise(self, factors: Iterable[float]) -> None:
         """Try rising factors up to the first at which it does not stand, or the run fails."""
         for factor in factors:
@@ -131,8 +117,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     """Find the least factor on the motion at which a container overturns or destroys a corner, and what governs.
 
     Args:
-        model: of the run; all trials have its container.
-        result: of the run, which is the trial of factor 1.
+        model, result: of the run, which is the trial of factor 1; all trials have its container.
         drawn: also with the unknown inputs drawn.
         stop: called in pauses; true ends the search.
 
@@ -142,22 +127,33 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     verdict, cost = result.verdict or Verdict(), max(cost_of(result.numerics or Numerics()), 1e-9)
     itself = Tried(ending_of(result.status, verdict.outcome), verdict.turned)
     own, least = Search(_trial(model, {}, stop), {1.0: itself}), _least(model)
-    most, draws = _largest(model.case), []
+    most, draws, in_band = _largest(model.case), [], None
+    members = verdict.band.members if verdict.band else ()
+    if (
+        itself.ending != Ending.OVERTURNED
+    ):  # how a member ends that does not stand under the motion of the run
+        ends = {ending(run) for run in members[1:] if run.outcome is not None and not numerical(run)}
+        in_band = next((end for end in NOT_STANDING if end in ends), None)
     try:
         with worker_threads(workers := workers_for(model, SCANNED)) as pool:
             _scan(own, least, most, pool, workers)
             runs = LEAST_RUNS if model.case.solver.model == "full" else int(OWN_S / cost)
             _narrow([own], min(MOST_RUNS, max(LEAST_RUNS, runs)), pool, RESOLUTION)
             bare = _bare(model, least, most, pool, stop) if model.case.links or model.case.neighbour else None
-            in_band = None if itself.ending == Ending.OVERTURNED else _in_band(verdict)
             begin = min(own.known) if in_band or itself.ending == Ending.OVERTURNED else 1.0
             if drawn:
                 drawn_runs = int(DRAWN_S / cost)
-                worst = _worst_draws(model, verdict, min(DRAWS, max(LEAST_DRAWS, drawn_runs // RUNS_A_DRAW)))
+                count = min(DRAWS, max(LEAST_DRAWS, drawn_runs // RUNS_A_DRAW))
+                # those that turn most under the motion of the run, by its band
+                turned = {key_of(member.values): member.turned for member in members}
+                values = [change.values for change in all_changes(model.case, model.penalty)[2]]
+                worst = sorted(
+                    ((turned.get(key_of(one), 0.0), -k) for k, one in enumerate(values)), reverse=True
+                )
                 # what is not known to stand at `begin` falls just above it, too
                 draws = [
-                    Search(_trial(model, values, stop), {begin: Tried(Ending.STANDING, turned)})
-                    for values, turned in worst
+                    Search(_trial(model, values[-k], stop), {begin: Tried(Ending.STANDING, most_turned)})
+                    for most_turned, k in worst[:count]
                 ]
                 ratio = (own.end / begin) ** (1.0 / RISING)
                 rising = (  # staggered, the last of each where the case itself ends
@@ -171,11 +167,11 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     said = own.of(Ending.STANDING, Ending.OVERTURNED)
     factor, destroyed = own.first(Ending.OVERTURNED), own.first(Ending.INVALID)
     falls = [draw.first(Ending.OVERTURNED) for draw in draws if not draw.of(Ending.INVALID, Ending.FAILED)]
-    reached = [
-        fall for fall in (factor, *(draw.first(Ending.OVERTURNED) for draw in draws)) if fall is not None
-    ]
-    if in_band == Ending.OVERTURNED:
-        reached.append(1.0)
+    ends_of_all = (factor, *(draw.first(Ending.OVERTURNED) for draw in draws))
+    reached = [fall for fall in ends_of_all if fall is not None] + [1.0] * (in_band == Ending.OVERTURNED)
+    beyond = [other for other in said if factor is not None and other > factor]
+    by_ending = groupby(beyond, key=lambda factor: own.known[factor].ending)
+    islands = [list(group) for end, group in by_ending if end == Ending.STANDING]
     return Margin(
         factor=factor,
         stands_up_to=max(
@@ -187,7 +183,7 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
         draws_standing=falls.count(None),
         draws_failed=len(draws) - len(falls),
         draws_tried_to=own.end if draws else None,
-        islands=_islands(own),
+        islands=tuple((island[0], island[-1]) for island in islands),
         least_tried=min(said),
         largest_tried=max(said),
         runs=len(said) - 1,
@@ -221,22 +217,6 @@ def _governing(own: Search, draws: Sequence[Search], in_band: Ending | None) -> 
         step=max(steps, default=None),
         **counts,
     )
-
-
-def _worst_draws(model: Model, verdict: Verdict, count: int) -> list[tuple[Mapping[str, Value], float]]:
-    """The draws of all unknown inputs that turn most under the motion of the run, and how far, by its band."""
-    members = verdict.band.members if verdict.band else ()
-    turned = {key_of(member.values): member.turned for member in members}
-    draws = [change.values for change in all_changes(model.case, model.penalty)[2]]
-    known = sorted(((turned.get(key_of(values), 0.0), -k) for k, values in enumerate(draws)), reverse=True)
-    return [(draws[-k], ratio) for ratio, k in known[:count]]
-
-
-def _in_band(verdict: Verdict) -> Ending | None:
-    """How a member of the band ends that does not stand under the motion of the run, by another input."""
-    members = verdict.band.members[1:] if verdict.band else ()
-    ends = {ending(member) for member in members if member.outcome is not None and not numerical(member)}
-    return next((end for end in NOT_STANDING if end in ends), None)
 
 
 def _bare(
@@ -291,7 +271,13 @@ def _scan(search: Search, least: float, most: float, pool: Executor, side_by_sid
     else:
         count = min(SCANNED, math.ceil(math.log(largest / least) / math.log(STEP)))
         factors = [*(least * (largest / least) ** (k / count) for k in range(count)), largest]
-    search.scan([factor for factor in factors if abs(factor - 1.0) > 1e-9], pool, side_by_side)
+    factors = [factor for factor in factors if abs(factor - 1.0) > 1e-9]
+    for begin in range(0, len(factors), side_by_side):
+        some = factors[begin : begin + side_by_side]
+        search.known |= dict(zip(some, pool.map(search.trial, some), strict=True))
+        if (last := search.first(Ending.INVALID)) is not None:  # none above one that destroys a corner counts
+            search.known = {factor: tried for factor, tried in search.known.items() if factor <= last}
+            break
     while search.known[lowest := min(search.known)].ending == Ending.OVERTURNED and lowest > LEAST:
         lower = max(LEAST, lowest / STEP**2)
         search.known[lower] = search.trial(lower)
@@ -306,12 +292,12 @@ def _narrow(searches: Sequence[Search], runs: int, pool: Executor, resolution: f
                 search.locate(resolution)
         end = min((search.end for search in searches), default=0.0)
         left = runs - sum(len(search.known) for search in searches)
-        wide = [
-            (search.weight(low, high), -low, number, high)
-            for number, search in enumerate(searches)
-            for low, high in search.steps(min(end, search.end))
-            if high > (1.0 + FINEST) * low
-        ]
+        wide = []
+        for number, search in enumerate(searches):
+            for low, high in search.steps(min(end, search.end)):
+                if high > (1.0 + FINEST) * low:
+                    turned = max(min(1.0, search.known[factor].turned) for factor in (low, high))
+                    wide.append((math.log(high / low) * (STILL + turned), -low, number, high))
         chosen = sorted(wide, reverse=True)[: min(BATCH, left)]
         if left <= 0 or not chosen:
             return
@@ -319,17 +305,6 @@ def _narrow(searches: Sequence[Search], runs: int, pool: Executor, resolution: f
         found = pool.map(lambda middle: middle[0].trial(middle[1]), middles)
         for (search, middle), tried in zip(middles, found, strict=True):
             search.known[middle] = tried
-
-
-def _islands(search: Search) -> tuple[tuple[float, float], ...]:
-    """Where it stands again beyond the first factor that overturns: the least and the largest factor of each."""
-    islands: list[list[float]] = []
-    for factor in search.of(Ending.STANDING, Ending.OVERTURNED):
-        if search.known[factor].ending == Ending.OVERTURNED:
-            islands.append([])
-        elif islands:
-            islands[-1].append(factor)
-    return tuple((island[0], island[-1]) for island in islands if island)
 
 
 def _trial(model: Model, values: Mapping[str, Value], stop: Callable[[], bool]) -> Trial:

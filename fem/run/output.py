@@ -6,7 +6,7 @@ place is cut off when the run resumes, and what lies before it must not have cha
 
 import hashlib
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -42,7 +42,7 @@ RECORDED, BODY = "recorder.", "body."
 Arrays = dict[str, NDArray[Any]]
 
 
-def misfit(path: Path, reason: str) -> CheckpointError:
+def _misfit(path: Path, reason: str) -> CheckpointError:
     """The error of a checkpoint that does not fit the run it is found with."""
     return CheckpointError(path, f"does not fit this run: {reason}")
 
@@ -80,20 +80,12 @@ def _waiting(run: RunState, clock: NDArray[Any]) -> Arrays:
     return arrays
 
 
-def _named(arrays: Arrays, prefix: str) -> Arrays:
-    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
-
-
 def require_same(path: Path, arrays: Arrays, wanted: Arrays) -> None:
-    """Refuse arrays that are not those of this model's run.
-
-    Raises:
-        CheckpointError: names the first that does not fit.
-    """
+    """Refuse arrays that are not those of this model's run, by a CheckpointError that names the first."""
     for name, mine in wanted.items():
         theirs = arrays.get(name)
         if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:
-            raise misfit(path, f"its {name} is not that of this run")
+            raise _misfit(path, f"its {name} is not that of this run")
 
 
 class Spent(TypedDict):
@@ -104,29 +96,20 @@ class Spent(TypedDict):
     compile_s: float  #: of the wall time, the compilation of kernels
 
 
-NOTHING_SPENT = Spent(wall_s=0.0, cpu_s=0.0, compile_s=0.0)
-
-
 class Stopwatch:
-    """Counts the times that a run takes."""
+    """Counts the times that a run takes, over all its resumptions."""
 
     def __init__(self) -> None:
-        self.before = NOTHING_SPENT  #: before the run was interrupted
-        self._began = _readings()
+        self.before = np.zeros(3)  #: before the run was interrupted
+        self._began = self._readings()
 
     def spent(self) -> Spent:
         """What the run has taken in all."""
-        before = self.before
-        wall_s, cpu_s, compile_s = (_readings() - self._began).tolist()
-        return Spent(
-            wall_s=before["wall_s"] + wall_s,
-            cpu_s=before["cpu_s"] + cpu_s,
-            compile_s=before["compile_s"] + compile_s,
-        )
+        wall_s, cpu_s, compile_s = (self.before + (self._readings() - self._began)).tolist()
+        return Spent(wall_s=wall_s, cpu_s=cpu_s, compile_s=compile_s)
 
-
-def _readings() -> FloatArray:
-    return np.array([time.perf_counter(), time.process_time(), compilation_time()])
+    def _readings(self) -> FloatArray:
+        return np.array([time.perf_counter(), time.process_time(), compilation_time()])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,12 +120,7 @@ class Start:
     arrays: Arrays = field(default_factory=dict)  #: as `state_of` names them; empty: t = 0
     history_bytes: int | None = None  #: of the history that stay; None: it is new
     frames_s: tuple[float, ...] = ()  #: times of the frames that stay
-    spent: Spent = field(default_factory=lambda: NOTHING_SPENT)
-
-    @property
-    def is_resumed(self) -> bool:
-        """Whether there is a checkpoint."""
-        return bool(self.arrays)
+    spent: FloatArray = field(default_factory=lambda: np.zeros(3))  #: by then, as `Spent` has it [s]
 
     def restore(self, model: Model, recorder: Recorder) -> None:
         """Give run, body and recorder this state; they stay as they are at t = 0."""
@@ -152,17 +130,20 @@ class Start:
             np.copyto(array, self.arrays[name])
         for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
             np.copyto(array, self.arrays[name])
+        of_body, recorded = (
+            {name.removeprefix(whose): array for name, array in self.arrays.items() if name.startswith(whose)}
+            for whose in (BODY, RECORDED)
+        )
         if not isinstance(model.body, ModalBody | LooseStack | LinkedBody):
-            model.body.recall(_named(self.arrays, BODY))
-        recorder.recall(_named(self.arrays, RECORDED))
+            model.body.recall(of_body)
+        recorder.recall(recorded)
 
 
 def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
     """The start that the checkpoint of a run asks for, after a check of all that it refers to; without one, t = 0.
 
-    Raises:
-        CheckpointError: damaged, of another case or version, not of this model's run, or history and frames have
-            changed since. Nothing has been changed then.
+    A CheckpointError where it is damaged, of another case or version, not of this model's run, or history and frames
+    have changed since.
     """
     path = files.checkpoint
     if not path.exists():
@@ -174,7 +155,6 @@ def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
         notes, about = archive.about, archive.about["progress"]
         undriven, under_way = about["undriven"], about["slice"]
         length, digest = int(notes["history"]["bytes"]), str(notes["history"]["sha256"])
-        wall_s, cpu_s, compile_s = (float(notes["spent"][name]) for name in Spent.__annotations__)
         start = Start(
             progress=Progress(
                 stepping_cpu_s=float(about["stepping_cpu_s"]),
@@ -186,73 +166,49 @@ def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
             arrays=archive.arrays,
             history_bytes=length,
             frames_s=tuple(float(instant) for instant in notes["frames_s"]),
-            spent=Spent(wall_s=wall_s, cpu_s=cpu_s, compile_s=compile_s),
+            spent=np.array([float(notes["spent"][name]) for name in Spent.__annotations__]),
         )
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise misfit(path, f"its notes cannot be read ({error!r})") from None
+        raise _misfit(path, f"its notes cannot be read ({error!r})") from None
     if _digest_of_first(files.history, length) != digest:
-        raise misfit(path, f"{files.history.name} was changed since, or is missing")
+        raise _misfit(path, f"{files.history.name} was changed since, or is missing")
     for i in range(len(start.frames_s)):
         if not (files.fields / frame_name(i)).is_file():
-            raise misfit(path, f"{files.fields.name}/{frame_name(i)} is missing")
+            raise _misfit(path, f"{files.fields.name}/{frame_name(i)} is missing")
     return start
-
-
-class RunOutput:
-    """History and frames of a run, written as they come, and its checkpoint.
-
-    Args:
-        place: the folder of the run.
-        case_hash: of its case.
-        watch: counts its times.
-        recorder: of its samples, and where history and frames of them go.
-    """
-
-    def __init__(
-        self,
-        place: ResultFolder,
-        model: Model,
-        case_hash: str,
-        watch: Stopwatch,
-        recorder: Recorder,
-        history: HistoryWriter,
-        fields: FieldWriter | None,
-    ) -> None:
-        self._place, self._model, self._watch = place, model, watch
-        self.recorder, self._history, self._fields = recorder, history, fields
-        self._owner = {"case_hash": case_hash, "program": program_identity()}
-        self._last = time.monotonic()
-
-    def save(self, progress: Progress, now: bool) -> None:
-        """Write the checkpoint if the last one is old enough, or `now`; history and frames reach the disk before.
-
-        Raises:
-            OSError: it cannot be written, or the folder was lost.
-        """
-        if not now and time.monotonic() - self._last < CHECKPOINT_S:
-            return
-        self._place.check()
-        self._history.sync()
-        if self._fields is not None:
-            self._fields.sync()
-        about = {
-            **self._owner,
-            "time_s": float(self._model.run.clock[0].time),
-            "progress": asdict(progress),
-            "history": {"bytes": self._history.position, "sha256": self._history.digest},
-            "frames_s": list(self._fields.times) if self._fields is not None else [],
-            "spent": self._watch.spent(),
-        }
-        write_archive(RunFiles(self._place.path).checkpoint, about, state_of(self._model, self.recorder))
-        self._last = time.monotonic()
 
 
 @contextmanager
 def open_output(
     place: ResultFolder, model: Model, case_hash: str, watch: Stopwatch, start: Start
-) -> Iterator[RunOutput]:
-    """Open the files of a run, and put its model where it starts."""
-    case, fields, files = model.case, None, RunFiles(place.path)
+) -> Iterator[tuple[Recorder, Callable[[Progress, bool], None]]]:
+    """Open the files of a run and put its model where it starts; its recorder, and what writes its checkpoint.
+
+    That is written if the last one is old enough, or now; history and frames reach the disk before. It raises an
+    OSError where it cannot be written, or the folder was lost.
+    """
+    case, fields, files, last = model.case, None, RunFiles(place.path), time.monotonic()
+
+    def save(progress: Progress, now: bool) -> None:
+        nonlocal last
+        if not now and time.monotonic() - last < CHECKPOINT_S:
+            return
+        place.check()
+        history.sync()
+        if fields is not None:
+            fields.sync()
+        about = {
+            "case_hash": case_hash,
+            "program": program_identity(),
+            "time_s": float(model.run.clock[0].time),
+            "progress": asdict(progress),
+            "history": {"bytes": history.position, "sha256": history.digest},
+            "frames_s": list(fields.times) if fields is not None else [],
+            "spent": watch.spent(),
+        }
+        write_archive(files.checkpoint, about, state_of(model, recorder))
+        last = time.monotonic()
+
     with ExitStack() as stack:
         history = stack.enter_context(
             HistoryWriter(files.history, history_columns(case), position=start.history_bytes)
@@ -261,10 +217,10 @@ def open_output(
             fields = FieldWriter(files.fields, **LinkCells(model).mesh, kept_times=start.frames_s)
             stack.callback(fields.close)
         recorder = Recorder(model, recovery_of(model), history.append, fields.write if fields else None)
-        if start.is_resumed:
+        if start.arrays:
             start.restore(model, recorder)
             recorder.resume(read_history(files.history))
-        yield RunOutput(place, model, case_hash, watch, recorder, history, fields)
+        yield recorder, save
 
 
 def _digest_of_first(path: Path, count: int) -> str | None:

@@ -11,12 +11,12 @@ import numpy as np
 from contact.motion.kernel import floor_history, floor_motion
 from contact.stepping.body import ROTATION, State
 from contact.stepping.boxes import POINTS_OF_GAP
-from contact.stepping.state import ROW_ROTATION, RunState, Samples, row_names
+from contact.stepping.state import ROW_ROTATION, RunState, row_names
 from fem.case.columns import BOXES, JOINTS, NEIGHBOURS, STOPS, TIES, VERTICAL, history_columns
 from fem.case.tables.neighbours import places_of
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
-from fem.model.recovery import Recovery
+from fem.model.recovery import NodalFields, Recovery
 from fem.results.fields import FrameFields
 from fem.results.history import History, numbers_of
 from fem.results.outcome import MODES
@@ -54,11 +54,8 @@ class Recorder:
         frame_sink: FrameSink | None = None,
         joints: Joints | None = None,
     ) -> None:
-        self._model = model
-        self._recovery = recovery
-        self._history_sink = history_sink
-        self._frame_sink = frame_sink
-        self._links = LinkCells(model)
+        self._model, self._recovery, self._links = model, recovery, LinkCells(model)
+        self._history_sink, self._frame_sink = history_sink, frame_sink
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
         self._area = model.contact_areas
@@ -83,8 +80,19 @@ class Recorder:
     def drain(self, run: RunState) -> None:
         """Empty the run's arrays of samples."""
         self._drain_history(run)
-        self._drain_frames(run)
-        self._look_at_most_strained(run)
+        clock, samples = run.clock[0], run.buffers.frames
+        first, count = int(clock.frames_drained), int(clock.frames - clock.frames_drained)
+        for k in range(count):
+            time, here = (first + k) * samples.interval, slice(k, k + 1)
+            self._write_frame(run, time, samples.position[here], samples.velocity[here], samples.force[k])
+        clock.frames_drained = clock.frames
+        if self._recovery is not None and self._recovery.full:
+            # the stress at the most strained step of the slice, unless that is far below an earlier one
+            energy, position = float(run.strained[0, 0, 0]), run.strained[0, 0, 1:]
+            if energy >= STRAINED * self._most_strain:
+                self._note_stress(self._recovery.frame(position, np.zeros_like(position)))
+            self._most_strain = max(self._most_strain, energy)
+            run.strained[0, 0, 0] = -1.0
 
     def history(self) -> History:
         """Everything sampled so far."""
@@ -124,22 +132,37 @@ class Recorder:
             self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
 
     def _drain_history(self, run: RunState) -> None:
-        clock, samples = run.clock[0], run.buffers.history
+        clock, samples, case = run.clock[0], run.buffers.history, self._model.case
         first, count = int(clock.samples_drained), int(clock.samples - clock.samples_drained)
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
-        columns = dict(zip(row_names(self._model.case.bodies), samples.columns[:count].T, strict=True))
-        columns |= self._columns_of_row(columns, samples.force[:count])
+        columns = dict(zip(row_names(case.bodies), samples.columns[:count].T, strict=True))
+        force, row = samples.force[:count], self._model.container.row
+        # of neighbours the stepper has those of further boxes, in frames of their own
+        x = places_of(case, [neighbour.mesh.width for neighbour in row]).x if row else ()
+        for number in NEIGHBOURS.numbers(case):
+            begin = 2 * len(x) + POINTS_OF_GAP * (number - 1)
+            values = [columns[name] for name in BOXES.names((number + 1,))]
+            values[3] = values[3] + x[number]
+            side = force[:, begin : begin + POINTS_OF_GAP, 1].sum(axis=1)
+            columns |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
         columns["time_s"] = as_written(times)
         columns |= zip(BASE, floor_history(run.problem.motion, times), strict=True)
         columns |= zip(VERTICAL.names((0,)), floor_history(run.problem.vertical, times), strict=True)
-        joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
-        columns |= zip(joints, self._forces_in_joints(samples, first, count).T, strict=True)
-        case = self._model.case
-        links = (*STOPS.names(STOPS.numbers(case)), *TIES.names(TIES.numbers(case)))
+        if self.joints is not None:
+            # means since the sample before; the first of a run has its own acceleration
+            rotation = samples.columns[:count, ROW_ROTATION]
+            motion = self.joints.motion(samples.position[:count], samples.velocity[:count], rotation)
+            forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
+            if first == 0:
+                forces[0] = self._joint_forces
+            self.joint_motion = motion[-1]
+            joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
+            columns |= zip(joints, forces.reshape(count, -1).T, strict=True)
         if case.links:
-            columns |= zip(links, samples.force[:count, -len(links) :, 1].T, strict=True)
+            links = (*STOPS.names(STOPS.numbers(case)), *TIES.names(TIES.numbers(case)))
+            columns |= zip(links, force[:, -len(links) :, 1].T, strict=True)
         rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
         modes = [MODES[int(mode)] for mode in samples.mode[:count]]
@@ -149,57 +172,10 @@ class Recorder:
             self._history_sink(rows, modes)
         clock.samples_drained = clock.samples
 
-    def _columns_of_row(self, columns: Mapping[str, FloatArray], force: FloatArray) -> dict[str, FloatArray]:
-        """The columns of neighbours, of which the stepper has those of further boxes in frames of their own."""
-        container, case = self._model.container, self._model.case
-        x = places_of(case, [neighbour.mesh.width for neighbour in container.row]).x if container.row else ()
-        row_columns: dict[str, FloatArray] = {}
-        for number in NEIGHBOURS.numbers(case):
-            begin = 2 * len(x) + POINTS_OF_GAP * (number - 1)
-            values = [columns[name] for name in BOXES.names((number + 1,))]
-            values[3] = values[3] + x[number]
-            side = force[:, begin : begin + POINTS_OF_GAP, 1].sum(axis=1)
-            row_columns |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
-        return row_columns
-
-    def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
-        """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""
-        if self.joints is None:
-            return np.zeros((count, 0))
-        motion = self.joints.motion(
-            samples.position[:count], samples.velocity[:count], samples.columns[:count, ROW_ROTATION]
-        )
-        forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
-        if first == 0:
-            forces[0] = self._joint_forces
-        self.joint_motion = motion[-1]
-        return forces.reshape(count, -1)
-
-    def _look_at_most_strained(self, run: RunState) -> None:
-        """Note the stress of a full model at the most strained step of a slice, unless far below an earlier one."""
-        if self._recovery is None or not self._recovery.full:
-            return
-        energy = float(run.strained[0, 0, 0])
-        if energy >= STRAINED * self._most_strain:
-            position = run.strained[0, 0, 1:]
-            frame = self._recovery.frame(position, np.zeros_like(position))
-            if frame.von_mises is not None:
-                self._note_stress(self._recovery.largest_in(frame.von_mises))
-        self._most_strain = max(self._most_strain, energy)
-        run.strained[0, 0, 0] = -1.0
-
-    def _note_stress(self, stress: float) -> None:
-        self._stress = max(self._stress or 0.0, stress)
-
-    def _drain_frames(self, run: RunState) -> None:
-        clock, samples = run.clock[0], run.buffers.frames
-        first, count = int(clock.frames_drained), int(clock.frames - clock.frames_drained)
-        for k in range(count):
-            time = (first + k) * samples.interval
-            self._write_frame(
-                run, time, samples.position[k : k + 1], samples.velocity[k : k + 1], samples.force[k]
-            )
-        clock.frames_drained = clock.frames
+    def _note_stress(self, frame: NodalFields) -> None:
+        """Note the largest stress of a frame of a full model."""
+        if frame.von_mises is not None and self._recovery is not None and self._recovery.full:
+            self._stress = max(self._stress or 0.0, self._recovery.largest_in(frame.von_mises))
 
     def finish(self, run: RunState) -> None:
         """Write a frame of the last instant, where the run ends between two."""
@@ -217,26 +193,19 @@ class Recorder:
         if self._recovery is None or not position.size:
             return
         frame = self._recovery.frame(position[0], velocity[0])
-        if frame.von_mises is not None and self._recovery.full:
-            self._note_stress(self._recovery.largest_in(frame.von_mises))
+        self._note_stress(frame)
         if self._frame_sink is None:
             return
-        pressure, points = np.zeros(len(frame.displacement)), len(self._area)
-        pressure[self._model.container.nodes[:points]] = force[:points, 1] / self._area
-        floor, _, _ = floor_motion(run.problem.motion, time)
-        lift, _, _ = floor_motion(run.problem.vertical, time)
-        self._frame_sink(
-            self._links.added_to(
-                FrameFields(
-                    **vars(frame),
-                    time=float(as_written(np.array(time))),
-                    contact_pressure=pressure,
-                    floor_displacement=float(floor),
-                    floor_lift=float(lift),
-                ),
-                run,
-            )
+        pressure, area = np.zeros(len(frame.displacement)), self._area
+        pressure[self._model.container.nodes[: len(area)]] = force[: len(area), 1] / area
+        fields = FrameFields(
+            **vars(frame),
+            time=float(as_written(np.array(time))),
+            contact_pressure=pressure,
+            floor_displacement=float(floor_motion(run.problem.motion, time)[0]),
+            floor_lift=float(floor_motion(run.problem.vertical, time)[0]),
         )
+        self._frame_sink(self._links.added_to(fields, run))
 
 
 def as_written(times: FloatArray) -> FloatArray:

@@ -63,18 +63,12 @@ class RigidCheck:
         return "\n".join(lines) + "\n"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Reference:
-    """The motion of the rigid block."""
-
-    name: str
-    motion: RockingMotion | PlanarMotion
-    impact: PlanarImpact | None  #: the first after it had tilted
-    left_model_at: float | None = None  #: outside its model from here on [s]
-
-
 def check_against_rigid_block(model: Model, history: History, verdict: Verdict) -> RigidCheck:
-    """Compare a finished run with the rigid block.
+    """Compare a finished run with the rigid block under its floor.
+
+    A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
+    block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
+    gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
 
     Args:
         model, history, verdict: of the run; the model may be stepped or not.
@@ -86,22 +80,32 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     if len(history.modes) < 2:
         raise ValueError(f"rigid check: the history needs two samples and has {len(history.modes)}")
     time, angle = history["time_s"], model.static.slenderness_angle
-    reference = follow_block(model, float(time[-1]))
-    rotation, rate = reference.motion.at(time)[:2]
+    end = float(time[-1])
+    block, floor = _with_friction(model, end)
+    outside = block.outcome is PlanarMode.OUTSIDE
+    slides = block.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK} or (model.case.has_normal and outside)
+    motion: RockingMotion | PlanarMotion = block if slides else _without_sliding(model, floor, end)
+
+    def had_tilted(impact: PlanarImpact) -> bool:
+        before = motion.at(np.linspace(0.0, impact.time, 512))[0]
+        return bool(np.nanmax(np.abs(before)) > ROCKING * angle)
+
+    impact = next(filter(had_tilted, motion.impacts), None)
+    rotation, rate = motion.at(time)[:2]
     peaks = zip(
         first_peaks(time, history["rotation_rad"], ROCKING * angle)[:PEAKS],
         first_peaks(time, rotation, ROCKING * angle)[:PEAKS],
         strict=False,
     )
     same_side = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, peaks)
-    reasons = reasons_against(model, history, verdict, reference)
-    impact = reference.impact
+    left_model_at = block.end if slides and outside else None
+    reasons = _reasons_against(model, history, verdict, impact, left_model_at)
     impacts = RunAndBlock(run=verdict.first_impact_s, block=impact.time if impact else None)
     ratio = impact.velocity_after / impact.velocity_before if impact else None
     first = min((time_s for time_s in (impacts.run, impacts.block) if time_s is not None), default=math.inf)
     difference = np.abs(history["rotation_rad"] - rotation)[(time < first) & np.isfinite(rotation)]
     result = RigidCheckResult(
-        reference=reference.name,
+        reference="rigid block with friction" if slides else "rigid block that does not slide",
         meaningful=not reasons,
         reasons=tuple(reasons),
         first_impact_s=impacts,
@@ -117,11 +121,7 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
 
 
 def analytic_block(model: Model, end: float) -> AnalyticBlock:
-    """The rigid block of a container under its motion, up to `end` [s].
-
-    Raises:
-        EventError: the block changes its state too often.
-    """
+    """The rigid block of a container under its motion, up to `end` [s]; EventError: it changes its state too often."""
     angle, (block, floor) = model.static.slenderness_angle, _with_friction(model, end)
     times = np.linspace(0.0, block.end, max(2, math.ceil(SAMPLES_OF_SLIP * block.end)))
     slip = block.at(times).slip
@@ -133,20 +133,17 @@ def analytic_block(model: Model, end: float) -> AnalyticBlock:
         outcome=None if block.outcome is PlanarMode.OUTSIDE else block.outcome.value,
         rotation_ratio=block.largest_rotation / angle,
         max_slip_m=float(np.nanmax(np.abs(slip))) if np.isfinite(slip).any() else None,
-        friction_needed=None if fell else friction_needed(block_of(model), swings, floor),
+        friction_needed=None if fell else _friction_needed(block_of(model), swings, floor),
     )
 
 
-def friction_needed(
+def _friction_needed(
     block: RigidBlock, held: RockingMotion | PlanarMotion, floor: FloorAcceleration
 ) -> float | None:
     """Largest |tangential| over normal force of a block that does not slide, impacts aside [-].
 
     About its corner its mass centre is at s = R (-sin l, cos l), l the slenderness angle less |rotation|, on the side
-    of the corner; T and N follow from the acceleration of that and of the floor.
-
-    Returns:
-        None where the block leaves the floor.
+    of the corner; T and N follow from the acceleration of that and of the floor. None where it leaves the floor.
     """
     times = np.linspace(0.0, held.end, max(2, math.ceil(SAMPLES_OF_FORCES * held.end)))
     rotation, rate = held.at(times)[:2]
@@ -177,30 +174,6 @@ def block_of(model: Model) -> RigidBlock:
     )
 
 
-def follow_block(model: Model, end: float) -> Reference:
-    """The rigid block under the run's floor, from the run's start to `end` [s].
-
-    A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
-    block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
-    gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
-    """
-    block, floor = _with_friction(model, end)
-    outside = block.outcome is PlanarMode.OUTSIDE
-    slides = block.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK} or (model.case.has_normal and outside)
-    motion: RockingMotion | PlanarMotion = block if slides else _without_sliding(model, floor, end)
-
-    def had_tilted(impact: PlanarImpact) -> bool:
-        before = motion.at(np.linspace(0.0, impact.time, 512))[0]
-        return bool(np.nanmax(np.abs(before)) > ROCKING * model.static.slenderness_angle)
-
-    return Reference(
-        name="rigid block with friction" if slides else "rigid block that does not slide",
-        motion=motion,
-        impact=next(filter(had_tilted, motion.impacts), None),
-        left_model_at=block.end if slides and outside else None,
-    )
-
-
 def _with_friction(model: Model, end: float) -> tuple[PlanarMotion, FloorAcceleration]:
     """The block that may slide, and the acceleration of its floor, with its slope and vertical motion."""
     case = model.case
@@ -208,10 +181,9 @@ def _with_friction(model: Model, end: float) -> tuple[PlanarMotion, FloorAcceler
     if case.has_normal:
         floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
     jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
+    friction = {"mu_static": case.contact.mu_static, "mu_kinetic": case.contact.mu_kinetic}
     motion = simulate_planar_block(
-        PlanarBlock(
-            body=block_of(model), mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic
-        ),
+        PlanarBlock(body=block_of(model), **friction),
         floor,
         duration=end,
         rotation=case.initial.rotation_rad,
@@ -275,15 +247,26 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
     return peaks
 
 
-def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
-    """Reasons why the container differs from the rigid block; empty if there are none."""
-    case, mesh, static, impact = model.case, model.container.mesh, model.static, reference.impact
+def _reasons_against(
+    model: Model, history: History, verdict: Verdict, impact: PlanarImpact | None, left_model_at: float | None
+) -> list[str]:
+    """Reasons why the container differs from the rigid block; empty if there are none.
+
+    Args:
+        impact: the first of the block after it had tilted.
+        left_model_at: the block is outside its model from here on [s].
+    """
+    case, mesh, static, at = model.case, model.container.mesh, model.static, verdict.first_impact_s
     elastic = math.inf  #: first frequency of the container [Hz]
     if case.solver.model != "rigid":
         full = case.solver.model == "full"
         elastic = float(model.container.lowest_modes(1).frequencies_Hz[0] if full else model.spectra[0][0])
     moved = joints_in_words(verdict, static.to_result())
-    block_slides = impact is not None and (impact.slides or impact.slip_velocity_before != 0.0)
+    slides = impact is not None and (impact.slides or impact.slip_velocity_before != 0.0)
+    if at is not None and not slides:  # by what counts as sliding, within a few samples of the impact
+        first = int(np.searchsorted(history["time_s"], at))
+        near = history["slip_m"][max(first - 2, 0) : first + 3]
+        slides = bool(near.size and np.ptp(near) > SLIDING * mesh.width)
     return paragraphs(
         "reasons.txt.j2",
         case=case,
@@ -291,21 +274,12 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         static=static,
         quoted=repr,
         moved="" if moved == AS_ONE else moved,
-        slides=block_slides or _slides_at_impact(model, history, verdict),
+        slides=slides,
         stiffness=elastic / contact_frequency(mesh.mass, model.base_stiffness),
         damping_ratio=model.damping_ratio,
         sinking=static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle),
-        left_model_at=reference.left_model_at,
+        left_model_at=left_model_at,
         jerk=not case.starts_moving and floor_motion(model.vertical.compiled(), 0.0)[1] != 0.0,
-        no_impact=impact is None and verdict.first_impact_s is None,
+        no_impact=impact is None and at is None,
         **LIMITS,
     )
-
-
-def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:
-    """Whether the run slides by what counts as sliding within a few samples of its first impact."""
-    if verdict.first_impact_s is None:
-        return False
-    first = int(np.searchsorted(history["time_s"], verdict.first_impact_s))
-    near = history["slip_m"][max(first - 2, 0) : first + 3]
-    return bool(np.ptp(near) > SLIDING * model.container.mesh.width) if near.size else False

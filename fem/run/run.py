@@ -5,10 +5,11 @@ comparison with the rigid block and the band over unknown inputs.
 """
 
 import importlib
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from fem.case.case import Case, case_hash, to_toml
 from fem.model.container import discretise
@@ -25,7 +26,7 @@ from fem.results.run_result import RunResult
 from fem.run.band import ChangedRunsFile
 from fem.run.card import with_words
 from fem.run.compute import WantedChecks, add_checks, begun, lacking, resolve, stepped
-from fem.run.expected import expected_s, say_expected, with_band_s
+from fem.run.expected import expected_s, of_its_band_s, say_expected
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.preview import required_disk, size_in_words
 from fem.run.summary import plain_summary
@@ -95,7 +96,8 @@ def run_case(
             size = size_in_words(case, nodes, longest)
             place.require_room(required_disk(case, nodes, longest), size, way_out)
             alone = options.band is False or (case.solver.model == "full" and not options.band)
-            seconds = expected_s(case) if alone else with_band_s(case, cores())
+            seconds = expected_s(case)
+            seconds += 0.0 if alone else of_its_band_s(seconds) / cores()
             say_expected(reporter, "the run", seconds)
         with ending_at_once():
             model = build_model(case, discretise(case, mesh), motions=motions)
@@ -104,10 +106,10 @@ def run_case(
             result = known
             if result is None:
                 texts = {files.case.name: case_text, files.resolved.name: to_toml(case)}
-                result = compute_into(
+                result = _compute_into(
                     place, model, request, texts=texts, watch=watch, reporter=reporter, stop=stop
                 )
-                result = store(replace(result, **watch.spent()), case, place)
+                result = _store(replace(result, **watch.spent()), case, place)
             # The run is safe before its checks begin, and complete after them.
 
             def write(text: str) -> None:
@@ -124,9 +126,9 @@ def run_case(
             if checked is not result:
                 if known is None:
                     checked = replace(checked, **watch.spent())
-                result = store(checked, case, place)
+                result = _store(checked, case, place)
             if result is not known or _lacks_figures(files, case):
-                draw(model, place.path, reporter)
+                _draw(model, place.path, reporter)
     return open_run(folder)
 
 
@@ -137,7 +139,7 @@ def was_stopped(run: OpenedRun, options: RunOptions) -> bool:
     return run.status == "interrupted"
 
 
-def compute_into(
+def _compute_into(
     place: ResultFolder,
     model: Model,
     request: str,
@@ -147,47 +149,27 @@ def compute_into(
     reporter: Reporter,
     stop: Callable[[], bool],
 ) -> RunResult:
-    """Step a model from t = 0, or from its checkpoint, to a verdict; its files grow on the way.
-
-    Raises:
-        CheckpointError: the checkpoint to resume from does not fit; nothing has been changed then.
-    """
-    case, files = model.case, RunFiles(place.path)
+    """Step a model from t = 0, or from its checkpoint, to a verdict; its files grow on the way."""
+    files, result = RunFiles(place.path), begun(model, request)
     start = read_start(files, model, request) if place.resuming else Start()
     watch.before = start.spent
-    result = begun(model, request)
-    place.begin(result.to_json(), texts, keep=start.is_resumed)
-    with failure_noted(place, result):
-        copy_data_files(case, place.path)
-        with open_output(place, model, request, watch, start) as output:
-            if start.is_resumed:
-                reporter.message(f"resuming at t = {float(model.run.clock[0].time):.6g} s")
-            result, _ = stepped(
-                model,
-                result,
-                output.recorder,
-                reporter=reporter,
-                stop=stop,
-                save=output.save,
-                progress=start.progress,
-            )
-    return result
-
-
-@contextmanager
-def failure_noted(place: ResultFolder, begun: RunResult) -> Iterator[None]:
-    """Let `run.json` say that the run failed where its files cannot be written."""
+    place.begin(result.to_json(), texts, keep=bool(start.arrays))
+    options: dict[str, Any] = {"reporter": reporter, "stop": stop, "progress": start.progress}
     try:
-        yield
-    except OSError as error:
+        copy_data_files(model.case, place.path)
+        with open_output(place, model, request, watch, start) as (recorder, save):
+            if start.arrays:
+                reporter.message(f"resuming at t = {float(model.run.clock[0].time):.6g} s")
+            return stepped(model, result, recorder, save=save, **options)[0]
+    except OSError as error:  # `run.json` says that it failed where its files cannot be written
         if not isinstance(error, FolderLostError):
             reason = unwritable(place.path, error, WAY_ON)
             with suppress(OSError):
-                place.write_result(replace(begun, status="failed", error=reason).to_json())
+                place.write_result(replace(result, status="failed", error=reason).to_json())
         raise
 
 
-def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
+def _store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     """Write the summary, then `run.json` with its warnings: a run that is marked as finished has both.
 
     Checkpoints are removed after that, when there is nothing left to resume.
@@ -203,7 +185,7 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     return result
 
 
-def draw(model: Model, folder: Path, reporter: Reporter) -> None:
+def _draw(model: Model, folder: Path, reporter: Reporter) -> None:
     """Draw the figures of the run in a folder, where they are wanted; they are no part of the result."""
     if not model.case.output.figures:
         return

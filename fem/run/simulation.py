@@ -98,8 +98,7 @@ def simulate(
     """Step a model to its end; the recorder takes the samples.
 
     Args:
-        model: from its present state on; recorder: of its samples.
-        reporter: of the progress.
+        model: from its present state on.
         stop: called in pauses and between slices; true ends the simulation there.
         save: called there, too, and may save the state; its second argument is true where the simulation ends
             unfinished.
@@ -123,32 +122,54 @@ def simulate(
         run = on_resting_floor(run, progress.undriven[0], progress.undriven[1:])
     reporter.start(duration, float(clock.time))
     pace = Pace()
-    while progress.slice is not None or _goes_on(model):
+    while True:
+        # the present part of the run, and when it ends at the latest
+        part, until = UNDECIDED, duration + AFTERMATH / control.slowest_rocking
+        if clock.time < min(duration, model.rest_from):
+            part, until = DRIVEN, min(duration, model.rest_from)
+        elif clock.time < duration:
+            part, until = FREE, duration
+        if progress.slice is None and (clock.time >= until or is_over.py_func(model.run, part)):
+            break
         stopped = stop()
         if save is not None:
             save(progress, stopped)
         if stopped:
             return ended("interrupted")
         if progress.slice is None:
-            part, until = _part_of(model)
             usual = SLICE_FULL if full else slice_s or SLICE_REDUCED
             ahead = usual if part == DRIVEN else AFTERMATH_SLICE
             target = float(clock.next_look) if part == FREE else float(clock.time) + ahead
             if part == UNDECIDED and progress.undriven is None:
-                undriven = _leave_alone(model, run, recorder)
-                progress = replace(progress, undriven=undriven)
-                run = on_resting_floor(run, undriven[0], undriven[1:])
+                # change to the frame of the floor, which stands still from now on
+                since = float(clock.time)
+                x, velocity_x, _ = floor_motion(run.problem.motion, since)
+                z, velocity_z, _ = floor_motion(run.problem.vertical, since)
+                leave_body_alone(model.body, run, velocity_x, velocity_z)
+                recorder.change_frame((velocity_x, velocity_z))
+                progress = replace(progress, undriven=(since, float(x), float(z)))
+                run = on_resting_floor(run, since, (float(x), float(z)))
             most = _attempts(run) + (LOOK_FULL if full else LOOK_REDUCED)
             progress = replace(progress, slice=(min(target, until), most))
-        code, progress = _advance(model, run, progress, pace)
-        if progress.slice is None:
+        assert progress.slice is not None  # for the type checker
+        slice_end, most = progress.slice
+        before = _attempts(run)
+        clock.attempt_limit = pause = min(most, before + pace.attempts)
+        began, wall = time.thread_time(), time.perf_counter()  # others may step in other threads
+        code = advance_body(model.body, run, slice_end)
+        pace.note(_attempts(run) - before, time.perf_counter() - wall)
+        # Where the arrays of samples are full as well, the next call makes no step, and the slice ends then.
+        pausing = code == REACHED and clock.time < slice_end and _attempts(run) == pause < most
+        spent = progress.stepping_cpu_s + time.thread_time() - began
+        progress = replace(progress, stepping_cpu_s=spent, slice=progress.slice if pausing else None)
+        if not pausing:
             recorder.drain(run)
         ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
         reporter.update(float(clock.time), ratio, MODES[int(track.mode)])
-        if progress.slice is not None:
+        if pausing:
             continue
         stuck = _attempts(run) >= most_attempts(control, float(clock.time))
-        failure = crushing_failure(model)
+        failure = _crushed(model) if full else None
         if failure is None and (code == FAILED or (stuck and code != OVERTURNED)):
             residual = float(np.abs(run.work.law - run.work.force).max())
             failure = stepping_failure(model, residual)
@@ -162,62 +183,14 @@ def simulate(
     return ended("overturned" if np.isfinite(track.overturned_at) else "completed")
 
 
-def _advance(model: Model, run: RunState, progress: Progress, pace: Pace) -> tuple[int, Progress]:
-    """Step to the end of the slice or to the next pause; returns the code of `advance` and the progress."""
-    assert progress.slice is not None  # for the type checker
-    until, most = progress.slice
-    clock, before = run.clock[0], _attempts(run)
-    pause = min(most, before + pace.attempts)
-    clock.attempt_limit = pause
-    began, wall = time.thread_time(), time.perf_counter()  # others may step in other threads
-    code = advance_body(model.body, run, until)
-    pace.note(_attempts(run) - before, time.perf_counter() - wall)
-    # Where the arrays of samples are full as well, the next call makes no step, and the slice ends then.
-    pausing = code == REACHED and clock.time < until and _attempts(run) == pause < most
-    return code, replace(
-        progress,
-        stepping_cpu_s=progress.stepping_cpu_s + time.thread_time() - began,
-        slice=progress.slice if pausing else None,
-    )
-
-
 def _attempts(run: RunState) -> int:
     """Attempted steps so far, accepted and rejected."""
     return int(run.clock[0].steps + run.clock[0].rejected)
 
 
-def _goes_on(model: Model) -> bool:
-    """Whether the present part of the run has time left and is not over."""
-    part, until = _part_of(model)
-    return float(model.run.clock[0].time) < until and not is_over.py_func(model.run, part)
-
-
-def _part_of(model: Model) -> tuple[int, float]:
-    """The present part of the run, and when it ends at the latest [s]."""
-    time, duration = float(model.run.clock[0].time), model.duration
-    if time < min(duration, model.rest_from):
-        return DRIVEN, min(duration, model.rest_from)
-    if time < duration:
-        return FREE, duration
-    return UNDECIDED, duration + AFTERMATH / model.run.problem.control.slowest_rocking
-
-
-def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float, float]:
-    """Change to the frame of the floor, which stands still from now on; returns time [s] and place of the floor [m]."""
-    since = float(run.clock[0].time)
-    x, velocity_x, _ = floor_motion(run.problem.motion, since)
-    z, velocity_z, _ = floor_motion(run.problem.vertical, since)
-    leave_body_alone(model.body, run, velocity_x, velocity_z)
-    recorder.change_frame((velocity_x, velocity_z))
-    return since, float(x), float(z)
-
-
-def crushing_failure(model: Model) -> str | None:
+def _crushed(model: Model) -> str | None:
     """The message of a full model with an inverted element, or None; what follows is no motion of a container."""
-    if model.case.solver.model != "full":
-        return None
-    clock, positions = model.run.clock[0], model.run.old.position.reshape(-1, 2)
-    body = model.body
+    clock, positions, body = model.run.clock[0], model.run.old.position.reshape(-1, 2), model.body
     bodies = body.boxes if isinstance(body, FullStack) else (body,) if isinstance(body, FullBody) else ()
     ratio, first = math.inf, 0
     for box in bodies:

@@ -42,13 +42,11 @@ def judged(
     *,
     width: float,
 ) -> Verdict:
-    """The verdict with its band.
+    """The verdict of a run with its band.
 
     Args:
-        verdict: of the run.
         members: of the band, the run itself first, then one for each change.
-        changes: that the members made.
-        left_out: those that there was no time for.
+        left_out: changes that there was no time for.
         width: of the container [m].
     """
     own, others = members[0], members[1:]
@@ -62,7 +60,15 @@ def judged(
     outcomes = {member.outcome for member in members}
     alike = [member for member in members if ending(member) == ending(own) and member.outcome is not None]
     draws = [other for other in others if other.kind == "draw"]
-    ranges: dict[str, Any] = {key: _reach(member[key] for member in alike) for key in keys_of(Place.BAND)}
+    ranges: dict[str, Any] = {}
+    for key in keys_of(Place.BAND):
+        known = [value for member in alike if (value := member[key]) is not None]
+        ranges[key] = (min(known), max(known)) if known else None
+    fell, boxes = Counter(member.fell_box for member in members), []  # by which box fell first
+    for number, same in enumerate(zip(*(member.boxes for member in alike if member.boxes), strict=True), 1):
+        values = {name: [box[name] for box in same] for name in BOX_FIGURES}
+        reach = {name: (min(numbers), max(numbers)) for name, numbers in values.items()}
+        boxes.append(BoxReach(fell=fell[number], **reach))
     band = Band(
         outcomes=tuple(outcome for outcome in Outcome if outcome in outcomes),
         unsure=sure == UNSURE,
@@ -72,7 +78,7 @@ def judged(
         left_out=tuple(run.label for run in missing),
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
-        boxes=_reach_of_boxes(alike, members),
+        boxes=tuple(boxes) or None,
         **ranges,
     )
     stiff = [key for change in changes if change.kind == "floor" for key in change.inputs]
@@ -93,9 +99,8 @@ def how_sure(levels: Iterable[int]) -> str:
 
 def below_uplift(members: Sequence[ChangedRun]) -> bool:
     """True if the run rocks although a rigid block on a rigid floor would rest; a member has a stiff floor."""
-    return (
-        bool(members) and members[0].outcome in ROCKING and any(member.kind == "floor" for member in members)
-    )
+    on_stiff_floor = any(member.kind == "floor" for member in members)
+    return on_stiff_floor and members[0].outcome in ROCKING
 
 
 def rests_on_stiff_floor(members: Sequence[ChangedRun]) -> bool:
@@ -130,9 +135,7 @@ def numerical(change: ChangedRun | InputChange) -> bool:
 def difference(own: RunFigures, other: RunFigures, width: float) -> int:
     """How another run differs from a run, of SAME, OTHER_REGIME, OTHER_END; a failed one does not say.
 
-    Args:
-        own, other: what the two show.
-        width: of the container [m].
+    `width` is that of the container [m].
     """
     if other.outcome is None:
         return SAME
@@ -156,24 +159,6 @@ def _sizes(run: RunFigures, width: float) -> Iterator[float]:
         yield box.max_slip_m / (LARGE_SLIP * width)
         yield box.max_rotation_rad / large
         yield box.max_opening_m / (large * width)
-
-
-def _reach(values: Iterator[float | None]) -> tuple[float, float] | None:
-    known = [value for value in values if value is not None]
-    return (min(known), max(known)) if known else None
-
-
-def _reach_of_boxes(
-    alike: Sequence[ChangedRun], members: Sequence[ChangedRun]
-) -> tuple[BoxReach, ...] | None:
-    """The ranges of each box over the members that end as the run does, and in how many of all it fell first."""
-    fell = Counter(member.fell_box for member in members)
-    ranges = []
-    for number, same in enumerate(zip(*(member.boxes for member in alike if member.boxes), strict=True), 1):
-        values = {name: [box[name] for box in same] for name in BOX_FIGURES}
-        reach = {name: (min(numbers), max(numbers)) for name, numbers in values.items()}
-        ranges.append(BoxReach(fell=fell[number], **reach))
-    return tuple(ranges) or None
 
 
 def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator[str]:

@@ -37,7 +37,6 @@ from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
 from fem.results.run_result import Energy, JointDemand, NeighbourResult, Numerics, Verdict, to_overturn
-from fem.runtime.arrays import FloatArray
 from fem.runtime.units import SECONDS
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
@@ -47,7 +46,10 @@ STILL = 1e-4  #: change of the rotation over the slenderness angle below which a
 
 def outcome_of(model: Model) -> Outcome:
     """The outcome of the whole run, in one word; not valid where a corner is destroyed, whatever followed."""
-    return _motion_of(model) if destroyed_corner(model) is None else Outcome.INVALID
+    if destroyed_corner(model) is not None:
+        return Outcome.INVALID
+    fell = math.isfinite(model.run.track[0].overturned_at)
+    return Outcome.OVERTURNED if fell else Outcome.of(**_moves(model))
 
 
 def destroyed_corner(model: Model) -> str | None:
@@ -67,33 +69,17 @@ def destroyed_corner(model: Model) -> str | None:
     return f"{what} crushed by more than {1e3 * slab.deepest:.3g} mm"
 
 
-def _motion_of(model: Model) -> Outcome:
-    """The outcome of the whole run, by its motion alone."""
-    track = model.run.track[0]
-    if math.isfinite(track.overturned_at):
-        return Outcome.OVERTURNED
-    angle = ROCKING * model.static.slenderness_angle
+def _moves(model: Model) -> dict[str, bool]:
+    """Whether it slid and rocked beyond the limits, in a loose stack any box, and whether all of the base hopped."""
+    run, width = model.run, model.container.mesh.width
+    track, angle = run.track[0], ROCKING * model.static.slenderness_angle
+    upper = run.joints[1:] if not model.container.row else ()  # boxes of a loose stack
+    slides = run.joints[0].max_slip > least_slide(width)
     rocks = track.max_rocking > angle
-    for joint in _further_boxes(model):
+    for joint in upper:
+        slides = slides or joint.max_slip > least_slide(joint.width)
         rocks = rocks or min(joint.max_rotation, joint.max_opening / joint.width) > angle
-    return Outcome.of(slides=_slides(model), rocks=rocks, hops=_hops(model))
-
-
-def _slides(model: Model) -> bool:
-    """True if it slid by more than the limit; in a loose stack, if any box did."""
-    if model.run.joints[0].max_slip > least_slide(model.container.mesh.width):
-        return True
-    return any(joint.max_slip > least_slide(joint.width) for joint in _further_boxes(model))
-
-
-def _further_boxes(model: Model) -> Any:
-    """The joints under the upper boxes of a loose stack, of which what they do counts as well."""
-    return model.run.joints[1:] if not model.container.row else ()
-
-
-def _hops(model: Model) -> bool:
-    """True if all of the base left the floor at once."""
-    return bool(model.run.track[0].max_flight > HOPPING * model.container.mesh.width)
+    return {"slides": slides, "rocks": rocks, "hops": bool(track.max_flight > HOPPING * width)}
 
 
 def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> Verdict:
@@ -118,58 +104,62 @@ def place_of(case: Case, width: float) -> dict[str, Any]:
 
 
 def verdict_from(
-    model: Model,
-    end: float | None,
-    time: np.ndarray,
-    slip: np.ndarray,
-    largest_von_mises: float | None,
+    model: Model, end: float | None, time: np.ndarray, slip: np.ndarray, largest_von_mises: float | None
 ) -> Verdict:
     """The `verdict` of a model that was stepped to its end.
 
     Args:
-        model: only the record of its run is used.
         end: time of the last sample [s]; None if there is none.
         time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
         largest_von_mises: of the container [Pa].
     """
-    run, angle, outcome = model.run, model.static.slenderness_angle, _motion_of(model)
-    destroyed = destroyed_corner(model)
+    run, case, angle, moves = model.run, model.case, model.static.slenderness_angle, _moves(model)
+    destroyed, capacity = destroyed_corner(model), steel_capacity(case)
     track, joint = _numbers(run.track), _numbers(run.joints)
-    capacity = steel_capacity(model.case)
-    joints = [_numbers(run.joints[k:]) for k in range(len(run.joints) if _is_loose(model) else 0)]
+    fell = math.isfinite(track.overturned_at)
+    outcome = Outcome.OVERTURNED if fell else Outcome.of(**moves)
+    seen = {mode for mode in Outcome if (track.modes | moves["hops"] << Outcome.HOP.code) & 1 << mode.code}
+    if not moves["slides"]:  # sliding that is too small to count in the outcome does not count here
+        still = {Outcome.SLIDE: Outcome.REST, Outcome.SLIDE_ROCK: Outcome.ROCK}
+        seen = {still.get(mode, mode) for mode in seen}
+    loose = model.container.boxes and not model.container.row
+    joints = [_numbers(run.joints[k:]) for k in range(len(run.joints) if loose else 0)]
     boxes = tuple(
         BoxResult(**_recorded(BOX_FIGURES, joint=one), fell=math.isfinite(one.fell_at)) for one in joints
     )
     first = min(range(len(joints)), key=lambda k: joints[k].fell_at, default=0)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
+    lowest = float(run.old.boxes[0, ROTATION] if len(run.old.boxes) else run.old.pose[ROTATION])
     turned = run.old.boxes[:, ROTATION] if boxes else run.old.pose[ROTATION]
+    at_rest = _finite(float(run.clock[0].rest_since))
+    turns = track.left_open + track.right_open > 0 and at_rest is None  # about one side
     neighbours = _neighbour_results(model)
-    followed = end is not None and end > 0.0 and not model.case.output.stop_when_still
-    rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
+    followed = end is not None and end > 0.0 and not case.output.stop_when_still
+    lost_at_impact = 0.0 < track.restitution < MOST_RESTITUTION and not model.container.row
     return Verdict(
         **_recorded(FIGURES, track=track, joint=joint),
         outcome=outcome if destroyed is None else Outcome.INVALID,
         valid=destroyed is None,
         invalid_reason=destroyed,
-        leans=(outcome == Outcome.OVERTURNED and math.isfinite(run.clock[0].rest_since)) or None,
-        modes=_modes_seen(track.modes | _hops(model) << Outcome.HOP.code, outcome, slides=_slides(model)),
+        leans=(fell and at_rest is not None) or None,
+        # states that the history passed through, and the outcome, which may follow from creep alone
+        modes=tuple(mode for mode in Outcome if mode in seen or mode == outcome),
         max_rotation_rad=rotation,
         rotation_ratio=rotation / angle,
         flight_share=track.flight_time / track.rocking_time if track.rocking_time > 0.0 else None,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
-        tilt_rad=None if outcome == Outcome.OVERTURNED else _tilt(model),
-        restored=rocked and float(np.abs(turned).max()) < ROCKING * angle,
-        at_rest_s=_finite(float(run.clock[0].rest_since)),
+        tilt_rad=None if fell or turns else lowest,
+        restored=outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
+        and float(np.abs(turned).max()) < ROCKING * angle,
+        at_rest_s=at_rest,
         # of the first impact; none where it has none, or where other energy entered
-        restitution_first=track.restitution
-        if 0.0 < track.restitution < MOST_RESTITUTION and not model.container.row
-        else None,
+        restitution_first=track.restitution if lost_at_impact else None,
         max_top_displacement_m=track.max_top_displacement if followed else None,
         max_acceleration_m_s2=track.max_acceleration if followed else None,
         max_von_mises_Pa=largest_von_mises,
-        yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
-        stress_from_corner_m=None if largest_von_mises is None else casting_length(model.case),
+        yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(case) else None,
+        stress_from_corner_m=None if largest_von_mises is None else casting_length(case),
         corner_capacity_N=capacity,
         plastic_work_J=None
         if capacity is None
@@ -187,10 +177,6 @@ def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
     sources = {key: figure.of.split(".") for key, figure in figures.items() if figure.of}
     values = {key: getattr(records[record], name) for key, (record, name) in sources.items()}
     return {key: _finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
-
-
-def _is_loose(model: Model) -> bool:
-    return bool(model.container.boxes) and not model.container.row
 
 
 def _neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
@@ -259,14 +245,6 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
     }
 
 
-def _tilt(model: Model) -> float | None:
-    """Rotation, of a loose stack that of its lowest box [rad]; None while it turns about one side."""
-    state, track, at_rest = model.run.old, model.run.track[0], math.isfinite(model.run.clock[0].rest_since)
-    if track.left_open + track.right_open > 0 and not at_rest:
-        return None
-    return float(state.boxes[0, ROTATION] if len(state.boxes) else state.pose[ROTATION])
-
-
 def _indentation(model: Model) -> float | None:
     """Largest permanent indentation under a base point [m]; None where the floor does not crush."""
     run, base = model.run, model.run.problem.control.base_points * max(1, len(model.container.row))
@@ -280,11 +258,8 @@ def _numbers(records: Any) -> SimpleNamespace:
 
 def energy_of(model: Model) -> Energy:
     """The energy balance of a model that was stepped to its end."""
-    ledger, clock, reference = (
-        model.run.ledger,
-        model.run.clock[0],
-        model.run.problem.control.reference_energy,
-    )
+    ledger, clock = model.run.ledger, model.run.clock[0]
+    reference = model.run.problem.control.reference_energy
     return Energy(
         reference_J=reference,
         closure_error=max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
@@ -368,18 +343,6 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _modes_seen(modes: int, outcome: Outcome, *, slides: bool) -> tuple[str, ...]:
-    """States that the history passed through, and the outcome, which may follow from creep alone.
-
-    Sliding that is too small to count in the outcome does not count here.
-    """
-    seen = {mode for mode in Outcome if modes & 1 << mode.code}
-    if not slides:
-        still = {Outcome.SLIDE: Outcome.REST, Outcome.SLIDE_ROCK: Outcome.ROCK}
-        seen = {still.get(mode, mode) for mode in seen}
-    return tuple(mode for mode in Outcome if mode in seen or mode == outcome)
-
-
 def end_of_drive(model: Model) -> float:
     """When the floor stops, or else the run [s]."""
     return min(model.duration, getattr(model.motion, "end_time", math.inf))
@@ -407,45 +370,40 @@ def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | N
     standing = history["time_s"] <= model.run.track[0].overturned_at
     if history.joints == 0 or not standing.any():
         return None
-    return tuple(_demands_of(model, history, joint, standing) for joint in range(1, history.joints + 1))
+    mu, capacity = model.case.contact.mu_static, model.case.joints.bolt_capacity_N
+    time, demands = history["time_s"][standing], []
 
+    def first(happens: NDArray[np.bool_]) -> float | None:
+        """Time of the first sample at which it happens [s]."""
+        return float(time[np.argmax(happens)]) if happens.any() else None
 
-def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np.bool_]) -> JointDemand:
-    lower, upper = model.case.stack[joint - 1 : joint + 1]
-    start, end = shared_face(lower, upper)
-    width, mu = end - start, model.case.contact.mu_static
-    time = history["time_s"][standing]
-    normal, shear, moment = (history[name][standing] for name in JOINTS.names((joint,)))
-    left, right = edge_forces(normal, moment, width)
-    tension = max(0.0, -float(left.min())), max(0.0, -float(right.min()))
-    capacity = model.case.joints.bolt_capacity_N
-    carried = mu * np.maximum(normal, 0.0)
-    return JointDemand(
-        joint=joint,
-        height_m=upper.bottom,
-        min_normal_N=float(normal.min()),
-        max_normal_N=float(normal.max()),
-        max_shear_N=float(np.abs(shear).max()),
-        max_moment_Nm=float(np.abs(moment).max()),
-        bolt_tension_left_N=tension[0],
-        bolt_tension_right_N=tension[1],
-        bolt_utilisation=None if capacity is None else max(tension) / capacity,
-        bolt_shear_N=max(0.0, float((np.abs(shear) - carried).max())),
-        friction_needed=_friction_needed(normal, shear),
-        partly_opens_at_s=_first(time, np.abs(moment) > normal * width / 6.0),
-        opens_at_s=_first(time, np.minimum(left, right) < 0.0),
-        slides_at_s=_first(time, np.abs(shear) > carried),
-    )
-
-
-def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:
-    """Least coefficient of friction at which the joint never slides; None if there is shear without compression."""
-    sheared = shear != 0.0
-    if np.any(normal[sheared] <= 0.0):
-        return None
-    return float(np.max(np.abs(shear[sheared]) / normal[sheared], initial=0.0))
-
-
-def _first(time: FloatArray, happens: NDArray[np.bool_]) -> float | None:
-    """Time of the first sample at which it happens [s]."""
-    return float(time[np.argmax(happens)]) if happens.any() else None
+    for joint in range(1, history.joints + 1):
+        lower, upper = model.case.stack[joint - 1 : joint + 1]
+        start, end = shared_face(lower, upper)
+        normal, shear, moment = (history[name][standing] for name in JOINTS.names((joint,)))
+        left, right = edge_forces(normal, moment, end - start)
+        tension = max(0.0, -float(left.min())), max(0.0, -float(right.min()))
+        carried, size = mu * np.maximum(normal, 0.0), np.abs(shear)
+        sheared = shear != 0.0
+        demands.append(
+            JointDemand(
+                joint=joint,
+                height_m=upper.bottom,
+                min_normal_N=float(normal.min()),
+                max_normal_N=float(normal.max()),
+                max_shear_N=float(size.max()),
+                max_moment_Nm=float(np.abs(moment).max()),
+                bolt_tension_left_N=tension[0],
+                bolt_tension_right_N=tension[1],
+                bolt_utilisation=None if capacity is None else max(tension) / capacity,
+                bolt_shear_N=max(0.0, float((size - carried).max())),
+                # least coefficient of friction at which it never slides; none if sheared without compression
+                friction_needed=None
+                if np.any(normal[sheared] <= 0.0)
+                else float(np.max(size[sheared] / normal[sheared], initial=0.0)),
+                partly_opens_at_s=first(np.abs(moment) > normal * (end - start) / 6.0),
+                opens_at_s=first(np.minimum(left, right) < 0.0),
+                slides_at_s=first(size > carried),
+            )
+        )
+    return tuple(demands)

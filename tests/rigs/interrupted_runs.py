@@ -2,9 +2,12 @@
 
 from pathlib import Path
 
+from fem.case.case import Case, to_toml
 from fem.results.fields import open_fields
 from fem.results.history import read_history
 from fem.results.kinds import read_result
+from fem.results.reader import OpenedRun
+from fem.run.run import RunOptions, run_case
 
 FLAT_SHELL = ("support.kind=flat", "container.wall_m=0.02", "solver.elastic_modes=4")
 COARSE = ("solver.model=full", "solver.element_size_m=0.5")
@@ -15,6 +18,11 @@ def run_command(name: str, folder: Path, *overrides: str) -> list[str]:
     """The words of `python -m fem` that run a case into a folder."""
     changes = [word for override in overrides for word in ("--set", override)]
     return ["run", name, "--out", str(folder), "-q", *changes]
+
+
+def stored_run(case: Case, folder: Path, **options) -> OpenedRun:
+    """The run of a case in a folder, with these `RunOptions`."""
+    return run_case(case, case_text=to_toml(case), folder=folder, options=RunOptions(**options))
 
 
 def one_slice(stepping, *arguments, **options):

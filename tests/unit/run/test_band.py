@@ -5,7 +5,7 @@ from itertools import chain
 from pathlib import Path
 
 import pytest
-from interrupted_runs import run_command
+from interrupted_runs import run_command, stored_run
 
 from fem.__main__ import main
 from fem.case.case import Case, load_case
@@ -18,7 +18,6 @@ from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResu
 from fem.run import band
 from fem.run.band import DRAWN_TOLERANCE, plan_of, run_changes, wants_band
 from fem.run.recorder import Recorder
-from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
 from fem.run.verdict import joint_demands, verdict_of
 
@@ -28,7 +27,7 @@ FEW = ["uncertainty.draws=2", "uncertainty.weakening_m=known", "uncertainty.stri
 
 
 def verdict_with_band(folder: Path, case: Case) -> Verdict:
-    found = run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=True, margin=False))
+    found = stored_run(case, folder, band=True, margin=False)
     return found.typed_result.verdict
 
 
@@ -110,27 +109,25 @@ def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
         assert one.bolt_tension_N == (bolts if one.kind == "one" else None)
 
 
-def test_a_rest_far_below_the_static_limits_is_sure_without_a_band(tmp_path):
-    changes = ["motion.peak_acceleration_m_s2=1.0", *SHORT]
-    case = load_case("seed_stack", changes)
-    found = run_case(case, case_text=case.text, folder=tmp_path, options=RunOptions(margin=False))
-    found = found.typed_result.verdict
-    assert (found.outcome, found.sure, found.band) == ("rest", "sure", None)
-
-
-def test_a_range_that_the_case_states_is_tried_even_far_below_the_static_limits(tmp_path):
-    """1.7 m/s2 is 0.39 of the friction of the middle of the range, and 1.16 of that of its lower end."""
-    changes = [
-        "motion.peak_acceleration_m_s2=1.7",
-        "contact.mu_static=[0.15, 0.75]",
-        "solver.model=rigid",
-        *SHORT,
-    ]
-    case = load_case("seed_stack", changes)
-    found = run_case(case, case_text=case.text, folder=tmp_path, options=RunOptions(margin=False))
-    found = found.typed_result.verdict
-    assert (found.outcome, found.sure) == ("rest", "regime unsure")
-    assert "slide" in found.band.outcomes
+@pytest.mark.parametrize(
+    ("changes", "sure", "outcomes"),
+    [
+        (["motion.peak_acceleration_m_s2=1.0"], "sure", None),
+        # a range that the case states is tried: 1.7 m/s2 is 0.39 of the friction of its middle, 1.16 of its lower end
+        (
+            ["motion.peak_acceleration_m_s2=1.7", "contact.mu_static=[0.15, 0.75]"],
+            "regime unsure",
+            {"rest", "slide"},
+        ),
+    ],
+)
+def test_a_rest_far_below_the_static_limits_is_sure_without_a_band_but_of_a_stated_range(
+    tmp_path, changes, sure, outcomes
+):
+    found = stored_run(load_case("seed_stack", [*changes, *SHORT]), tmp_path, margin=False)
+    verdict = found.typed_result.verdict
+    assert (verdict.outcome, verdict.sure) == ("rest", sure)
+    assert (verdict.band and {*verdict.band.outcomes}) == outcomes
 
 
 class TestWhatDoesNotFitTheTime:

@@ -14,10 +14,7 @@ from fem.results.kinds import read_result
 from fem.run import band
 
 SHORT = (
-    "solver.duration_s=0.5",
-    "solver.element_size_m=0.5",
-    "output.fields_s=0",
-    "output.figures=false",
+    *("solver.duration_s=0.5", "solver.element_size_m=0.5", "output.fields_s=0", "output.figures=false"),
     "uncertainty.draws=2",
 )
 #: fewer members

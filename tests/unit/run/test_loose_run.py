@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 import pytest
 from cases import named_case
+from interrupted_runs import stored_run
 
 import fem
 from fem.case.case import read_case, to_toml
@@ -13,7 +14,6 @@ from fem.case.columns import BOXES
 from fem.results.history import read_history
 from fem.results.reader import open_run
 from fem.results.run_result import Verdict
-from fem.run.run import RunOptions, run_case
 from fem.run.summary import plain_summary
 
 #: three boxes that slide on one another
@@ -43,7 +43,7 @@ def run(case):
 
 
 def test_a_run_says_what_each_box_did(case, run, tmp_path):
-    stored = run_case(case, case_text=to_toml(case), folder=tmp_path / "run", options=RunOptions(band=False))
+    stored = stored_run(case, tmp_path / "run", band=False)
     result = json.loads((tmp_path / "run" / "run.json").read_text())
     verdict = result["verdict"]
     assert [set(box) for box in verdict["boxes"]] == [KEYS] * 3
@@ -98,9 +98,7 @@ def test_a_box_of_nodes_falls_and_its_files_say_so(tmp_path):
     case, folder = fem.case_from(PULLED), tmp_path / "run"
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # of the rigid check, whose container is of two pieces
-        run_case(
-            case, case_text=to_toml(case), folder=folder, options=RunOptions(band=False, check_rigid=True)
-        )
+        stored_run(case, folder, band=False, check_rigid=True)
     run = open_run(folder)
     verdict, history = run.verdict, run.history
     assert (verdict.outcome, verdict.fell_box, verdict.boxes[1].fell) == ("overturned", 2, True)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from interrupted_runs import stored_run
 
 from fem.case.case import load_case
 from fem.model.model import Model, build_model
@@ -14,7 +15,6 @@ from fem.results.history import read_history
 from fem.run.compute import wants_rigid_check
 from fem.run.recorder import Recorder
 from fem.run.rigid_check import RigidCheck, block_of, check_against_rigid_block, first_peaks, floor_of
-from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
 from fem.run.verdict import verdict_of
 
@@ -34,7 +34,7 @@ def run(folder: Path, *overrides: str) -> None:
     """Free rocking of the rigid model for 2 s, with its folder."""
     given = ("solver.model=rigid", "output.fields_s=0", "output.figures=false", "solver.duration_s=2")
     case = load_case("free_rocking", [*given, *overrides])
-    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
+    stored_run(case, folder, band=False)
 
 
 def reasons(name: str, *overrides: str) -> str:

@@ -192,9 +192,7 @@ def test_a_motion_file_may_not_lie_where_results_are_written(tmp_path, capsys, m
     monkeypatch.chdir(tmp_path)
     Path("history.csv").write_text("time_s,acceleration_m_s2\n0,0\n0.5,1\n1,0\n")
     changes = (
-        "motion.kind=table",
-        "motion.file=history.csv",
-        "motion.quantity=acceleration",
+        *("motion.kind=table", "motion.file=history.csv", "motion.quantity=acceleration"),
         "motion.unit=m/s2",
     )
     assert main(["init", "seed_box", "--to", "mine.toml"]) == 0

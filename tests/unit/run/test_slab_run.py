@@ -4,23 +4,17 @@ import json
 from dataclasses import replace
 
 import pytest
+from interrupted_runs import stored_run
 
 import fem
 from fem.case.case import load_case
 from fem.figures.forces import energy_figure
 from fem.run.card import card_of
-from fem.run.run import RunOptions, run_case
 
 KEYS = (
-    "floor.preset=concrete C25/30",
-    "floor.corner_patch_m=[0.008, 1.1]",
-    "solver.model=rigid",
-    "solver.element_size_m=0.5",
-    "solver.order=1",
-    "solver.duration_s=4",
-    "output.fields_s=0",
-    "output.figures=false",
-    "uncertainty.draws=2",
+    *("floor.preset=concrete C25/30", "floor.corner_patch_m=[0.008, 1.1]", "solver.model=rigid"),
+    *("solver.element_size_m=0.5", "solver.order=1", "solver.duration_s=4", "output.fields_s=0"),
+    *("output.figures=false", "uncertainty.draws=2"),
 )
 
 
@@ -28,7 +22,7 @@ KEYS = (
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("slab") / "run"
     case = load_case("rocking", KEYS)
-    run_case(case, case_text=case.text, folder=place, options=RunOptions(margin=False))
+    stored_run(case, place, margin=False)
     return place
 
 
@@ -78,7 +72,7 @@ WEAK = ("floor.bearing_strength_Pa=14e6", "solver.duration_s=10")
 
 def test_a_corner_that_is_destroyed_is_said_before_anything_else_and_is_never_sure(tmp_path):
     case = load_case("rocking", (*KEYS, *WEAK))
-    run_case(case, case_text=case.text, folder=tmp_path / "run")
+    stored_run(case, tmp_path / "run")
     found = json.loads((tmp_path / "run" / "run.json").read_text())
     verdict = found["verdict"]
     assert found["status"] == "completed" and verdict["outcome"] == "invalid"
@@ -116,9 +110,7 @@ def test_pressure_in_a_frame_is_the_force_of_a_corner_on_its_patch(boxes):
 
 def test_a_container_left_leaning_on_its_hole_is_said_to_lean():
     pulse = [
-        "motion.kind=pulse",
-        "motion.shape=half-sine",
-        "motion.peak_acceleration_m_s2=6.0",
+        *("motion.kind=pulse", "motion.shape=half-sine", "motion.peak_acceleration_m_s2=6.0"),
         "motion.pulse_s=0.4",
     ]
     weak = ["contact.mu_static=0.6", "floor.bearing_strength_Pa=12e6", "floor.corner_patch_m=[0.1, 0.2]"]

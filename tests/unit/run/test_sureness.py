@@ -5,11 +5,7 @@ from cases import named_case
 
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
-from fem.results.run_result import (
-    ChangedRun,
-    RunResult,
-    Verdict,
-)
+from fem.results.run_result import ChangedRun, RunResult, Verdict
 from fem.run.card import line, warnings_for
 from fem.run.sureness import judged
 
@@ -58,19 +54,13 @@ FAILED = {"outcome": None, "status": "failed", "rotation_ratio": None}
         ([(STIFF, {"rotation_ratio": 0.01})], "regime unsure", (PENALTY,)),
         ([(HALF, {}), (STIFF, FELL)], "unsure", (PENALTY,)),
         ([(SLOW, {"outcome": "rock"}), (STIFF, FELL)], "unsure", (PENALTY, SLIP)),
-        (
-            [(STIFF, FELL), (HALF, FELL), (SLOW, FELL)],
-            "unsure",
-            (SLIP, MU, PENALTY),
-        ),  # the smallest change first
+        # the smallest change first
+        ([(STIFF, FELL), (HALF, FELL), (SLOW, FELL)], "unsure", (SLIP, MU, PENALTY)),
         ([(EQUAL, FELL), (STIFF, FELL)], "unsure", (MU, PENALTY)),  # in the order of the inputs
         ([(HALF, {}), (BOTH, FELL)], "unsure", (MU, SLIP)),
         ([(HALF, FAILED)], "unsure", ()),
-        (
-            [(draw(0.1, 0.5), {}), (draw(0.9, 0.4), FELL), (draw(0.2, 0.6), {})],
-            "unsure",
-            (MU,),
-        ),  # tells them apart
+        # tells them apart
+        ([(draw(0.1, 0.5), {}), (draw(0.9, 0.4), FELL), (draw(0.2, 0.6), {})], "unsure", (MU,)),
     ],
 )
 def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, decided_by):

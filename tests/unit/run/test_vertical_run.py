@@ -5,22 +5,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from interrupted_runs import stored_run
 
 from fem import compute
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.results.reader import open_run
-from fem.run.run import RunOptions, run_case
 from fem.run.summary import plain_summary
 
 OMEGA, PHASE = 9.0, 0.5
 VERTICAL = (
-    "vertical.kind=harmonic",
-    "vertical.peak_acceleration_m_s2=3.0",
-    f"vertical.angular_frequency_rad_s={OMEGA}",
-    f"vertical.phase_rad={PHASE}",
-    "vertical.scale=-1",
+    *("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3.0"),
+    *(f"vertical.angular_frequency_rad_s={OMEGA}", f"vertical.phase_rad={PHASE}", "vertical.scale=-1"),
 )
 RIGID = (
     *("solver.model=rigid", "floor.kind=rigid", "solver.duration_s=1.5", "contact.mu_static=0.8"),
@@ -33,7 +30,7 @@ def folder(tmp_path_factory):
     """A short run of the stack under both motions, compared with the rigid block."""
     place = tmp_path_factory.mktemp("vertical") / "run"
     case = load_case("seed_stack_plateau", [*RIGID, *VERTICAL])
-    run_case(case, case_text=case.text, folder=place, options=RunOptions(band=False, check_rigid=True))
+    stored_run(case, place, band=False, check_rigid=True)
     return place
 
 
@@ -53,10 +50,8 @@ def test_the_history_has_the_motion_of_the_floor_upward(run):
         assert history[column] == pytest.approx(expected, abs=1e-12)
     assert history.joints == 3
     assert history.numbers[20:24] == (
-        "base_vertical_displacement_m",
-        "base_vertical_velocity_m_s",
-        "base_vertical_acceleration_m_s2",
-        "joint_1_normal_N",
+        *("base_vertical_displacement_m", "base_vertical_velocity_m_s"),
+        *("base_vertical_acceleration_m_s2", "joint_1_normal_N"),
     )
     weight = history["normal_force_N"][0] / (1.0 + history["base_vertical_acceleration_m_s2"][0] / 9.81)
     assert weight == pytest.approx(98100.0, rel=1e-6)
@@ -83,7 +78,7 @@ def test_frames_and_animation_move_with_the_floor(run):
 
 def test_what_a_floor_without_vertical_motion_writes_stays(tmp_path):
     case = load_case("seed_stack_plateau", [*RIGID, "output.fields_s=0"])
-    run_case(case, case_text=case.text, folder=tmp_path / "run", options=RunOptions(band=False))
+    stored_run(case, tmp_path / "run", band=False)
     text = (tmp_path / "run" / "run.json").read_text()
     assert "vertical" not in text and "least_weight" not in text
     assert "vertical" not in (tmp_path / "run" / "history.csv").read_text().partition("\n")[0]
@@ -106,9 +101,7 @@ def test_a_run_on_two_motions_lasts_as_long_as_the_longer_one():
 def test_a_container_that_leaves_its_floor_hops_and_its_verdict_is_tried():
     values = ["solver.model=rigid", "floor.kind=rigid", "motion.kind=none", "solver.duration_s=2"]
     strong = [
-        "vertical.kind=harmonic",
-        "vertical.peak_acceleration_m_s2=15",
-        "vertical.frequency_Hz=3",
+        *("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=15", "vertical.frequency_Hz=3"),
         "uncertainty.draws=0",
     ]
     run = compute(load_case("seed_stack_plateau", [*values, *strong]), margin=False)
