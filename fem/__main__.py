@@ -18,7 +18,7 @@ from contextlib import suppress
 from importlib import metadata
 from typing import Literal, NoReturn
 
-from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliTokensError
+from cyclopts import App, CycloptsError, Group, MissingArgumentError, Parameter, UnusedCliTokensError
 
 from fem.runtime.late_modules import load_late
 from fem.runtime.left import left_words
@@ -76,17 +76,23 @@ COMMANDS = [name for commands in GROUPS.values() for name in commands]
 #: commands that compute; `run` looks at its case before it asks for memory
 COMPUTING = {*COMMANDS} - {"check", "init", "list", "completion", "schema", "docs", "doctor", "run"}
 #: import strings of commands that are not `fem.cli.NAME:NAME`
-PLACES = {
-    "list": "fem.cli.shipped:list_cases",
-    "completion": "fem.__main__:completion",
-    "movie": "fem.cli.picture:movie",
-}
-PLACES |= {name: f"fem.cli.shipped:{name}" for name in ("init", "docs")}
-PLACES |= {name: f"fem.cli.evidence:{name}" for name in ("verify", "validate", "study")}
+PLACES = {"list": "fem.cli.shipped:list_cases", "completion": "fem.__main__:completion"}
 PLACES |= {
-    name: f"fem.cli.studies:{name}"
-    for name in ("sweep", "batch", "assess", "ensemble", "size", "response", "explore")
+    name: f"fem.cli.{module}:{name}"
+    for module, names in {
+        "check": "run",
+        "picture": "movie",
+        "shipped": "init schema docs doctor",
+        "evidence": "verify validate study",
+        "studies": "sweep batch assess ensemble size response explore",
+    }.items()
+    for name in names.split()
 }
+
+
+def _default_in_words(value: object) -> str | None:
+    """What help shows of a default: numbers and names."""
+    return None if value is None or value is False or value in ("", ()) else str(value)
 
 
 def build_app(name: str = "python -m fem") -> App:
@@ -98,6 +104,7 @@ def build_app(name: str = "python -m fem") -> App:
         help_format="plaintext",
         version=lambda: metadata.version("unanchored"),
         group_commands=Group("Options", sort_key=len(GROUPS)),
+        default_parameter=Parameter(negative=(), show_default=_default_in_words),
         result_action="return_value",
         suppress_keyboard_interrupt=False,  # it would end the process with a code of its own
     )
@@ -211,16 +218,6 @@ def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:
     return exit_code
 
 
-def _take_any_stream() -> None:
-    """Let both streams be closed, and of an encoding that lacks some signs, as that of a pipe on Windows does."""
-    for name in ("stdout", "stderr"):
-        stream = getattr(sys, name)
-        if stream is None:
-            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
-        elif isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
-
-
 def program() -> NoReturn:
     """The command line as a process of its own, which ends with the exit code of `main`.
 
@@ -229,7 +226,14 @@ def program() -> NoReturn:
     """
     raise_on_signal(watched=limit() is None)  # a thread takes 70 MB of address space
     load_late()
-    _take_any_stream()
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # closed
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
+        elif isinstance(
+            stream, io.TextIOWrapper
+        ):  # its encoding may lack some signs, as of a pipe on Windows
+            stream.reconfigure(errors="replace")
     # A pass of the cyclic collector for every 700 objects would be a fifth of a short run, most of it over the
     # modules that are being loaded.
     gc.set_threshold(COLLECT_EVERY)

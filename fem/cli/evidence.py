@@ -20,7 +20,7 @@ from fem.cli.console import (
     Force,
     Jobs,
     Quiet,
-    flag,
+    option,
     print_json,
     print_to_pdf,
 )
@@ -35,7 +35,8 @@ TESTS = Path(__file__).parents[2] / "tests"  #: beside the program in a clone
 FAILED = 3
 OUTPUTS = Path("outputs")
 STUDIES = ("seed",)
-Out = Annotated[Path | None, Parameter(help="Folder of document and page; default: outputs/COMMAND.")]
+Computed = tuple[dict[str, Any], dict[str, Any]]  #: document, and drawings by name
+Out = Annotated[Path | None, option("Folder of document and page; default: outputs/COMMAND.")]
 
 
 def from_clone(name: str) -> Any:
@@ -54,51 +55,48 @@ def from_clone(name: str) -> Any:
 
 
 def paper_report(folder: Path, **options: Any) -> str:
-    """The page of a checked paper.
-
-    Raises:
-        CaseError: as for `from_clone`.
-    """
+    """The page of a checked paper; a CaseError as for `from_clone`."""
     return str(from_clone("paper.run").paper_report(folder, **options))
 
 
 def verify(
     *,
-    quick: Annotated[bool, flag("Leave out long checks: half a minute once compiled, else two.")] = False,
-    topic: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.", "--topic", "--room")] = (),
-    manual: Annotated[
-        bool, flag("Write manual.html, too: each requirement with its check, and print it.")
-    ] = False,
+    quick: bool = False,
+    topic: Annotated[tuple[str, ...], Parameter(name=("--topic", "--room"))] = (),
+    manual: bool = False,
     out: Out = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> int:
-    """Compute the verification checks of the clone; writes verify.json, verify.html; ends with 3 if a row fails."""
-    suite = from_clone("verification.suite")
-    chosen = suite.chosen_checks(
-        quick=quick, topics=topic
-    )  # refuses an unknown topic before a folder is made
+    """Compute the verification checks of the clone; writes verify.json, verify.html; ends with 3 if a row fails.
 
-    def compute() -> tuple[dict[str, Any], dict[str, Any]]:
+    Args:
+        quick: Leave out long checks: half a minute once compiled, else two.
+        topic: Only this topic; may be repeated.
+        manual: Write manual.html, too: each requirement with its check, and print it.
+    """
+    suite = from_clone("verification.suite")
+    # refuses an unknown topic before a folder is made
+    chosen = suite.chosen_checks(quick=quick, topics=topic)
+
+    def compute() -> Computed:
         return suite.run_suite(chosen, quick=quick, reporter=ScreenReporter(quiet=quiet)), {}
 
     return _written("verify", out, compute, as_json=as_json, manual=manual)
 
 
 def validate(
-    *,
-    data: Annotated[
-        Path | None, Parameter(help="Folder of shake-table tests: of the rocks, or your own.")
-    ] = None,
-    out: Out = None,
-    as_json: AsJson = False,
-    quiet: Quiet = False,
+    *, data: Path | None = None, out: Out = None, as_json: AsJson = False, quiet: Quiet = False
 ) -> int:
-    """Predict the experiments of the clone; writes validate.json, validate.html; ends with 3 if one is missed."""
+    """Predict the experiments of the clone; writes validate.json, validate.html; ends with 3 if one is missed.
+
+    Args:
+        data: Folder of shake-table tests: of the rocks, or your own.
+    """
     suite = from_clone("validation.suite")
     suite.require(data)  # refused before a folder is made
 
-    def compute() -> tuple[dict[str, Any], dict[str, Any]]:
+    def compute() -> Computed:
         experiments = suite.run_validation(data, reporter=ScreenReporter(quiet=quiet))
         return suite.document_of(experiments), {one.name: one.figures for one in experiments}
 
@@ -106,18 +104,9 @@ def validate(
 
 
 def _written(
-    name: str,
-    out: Path | None,
-    compute: Callable[[], tuple[dict[str, Any], dict[str, Any]]],
-    *,
-    as_json: bool,
-    manual: bool = False,
+    name: str, out: Path | None, compute: Callable[[], Computed], *, as_json: bool, manual: bool = False
 ) -> int:
-    """Write NAME.json and NAME.html, the manual where it is asked for, and print the document or its table.
-
-    Returns:
-        The exit code, 3 where a finding fails.
-    """
+    """Write NAME.json and NAME.html, or the manual, too, and print the document or its table; the exit code."""
     folder = out if out is not None else OUTPUTS / name
     pages = from_clone("evidence.pages")
     require_writable(folder, ELSEWHERE_OUT, BYTES_BESIDE)
@@ -132,9 +121,7 @@ def _written(
         if manual:
             page = folder / "manual.html"
             write_atomically(page, pages.page_of("manual", document, pictures))
-    shown = f"{page} shows the tables and drawings"
-    if manual:
-        shown += f"\n{print_to_pdf(page)}"
+    shown = f"{page} shows the tables and drawings" + (f"\n{print_to_pdf(page)}" if manual else "")
     say(text.rstrip() if as_json else "\n".join([*pages.LINES[name](document), shown]))
     return 0 if document["passed"] else FAILED
 
@@ -143,11 +130,11 @@ def study(
     name: str = "seed",
     /,
     *,
-    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/study_NAME.")] = None,
+    out: Path | None = None,
     jobs: Jobs = None,
-    only: Annotated[tuple[str, ...], flag("Only this claim; may be repeated.")] = (),
+    only: tuple[str, ...] = (),
     force: Force = False,
-    as_json: Annotated[bool, flag("Print study.json.", "--json")] = False,
+    as_json: Annotated[bool, option("Print study.json.", "--json")] = False,
     quiet: Quiet = False,
 ) -> int:
     """Check every claim of the paper: confirmed, confirmed within stated bounds, or refuted.
@@ -156,10 +143,10 @@ def study(
     containers. The claims are in the clone. Writes study.html, one page with the run, figure and number behind each
     conclusion, and study.json. A claim that the same version of the program has decided is not checked again.
 
-    Parameters
-    ----------
-    name:
-        The study: seed.
+    Args:
+        name: The study: seed.
+        out: Folder of the results; default: outputs/study_NAME.
+        only: Only this claim; may be repeated.
     """
     if name not in STUDIES:
         near = did_you_mean(name, STUDIES)

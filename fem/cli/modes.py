@@ -6,10 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
-
-from fem.case.case import Case, CaseError, load_case
-from fem.cli.console import ELSEWHERE_OUT, AsJson, CaseName, Overrides, whole
+from fem.case.case import CaseError, load_case
+from fem.cli.console import ELSEWHERE_OUT, WHOLE, AsJson, CaseName, Overrides
 from fem.figures.modes import modes_figure
 from fem.figures.style import house_style, svg_of
 from fem.model.container import discretise
@@ -19,7 +17,7 @@ from fem.run.expected import say_expected
 from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say
-from fem.solid.assembly import FiniteElements, assemble
+from fem.solid.assembly import assemble
 from fem.solid.modes import ElasticModes, elastic_mode_table, elastic_modes, write_modes
 
 RIGID_MODES, SHOWN = 3, 20
@@ -30,16 +28,32 @@ def modes(
     case: CaseName = None,
     /,
     *,
-    count: Annotated[int | None, whole("Number of modes; default: solver.elastic_modes, or 20.")] = None,
-    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
+    count: Annotated[int | None, WHOLE] = None,
+    out: Path | None = None,
     overrides: Overrides = (),
     as_json: AsJson = False,
 ) -> None:
-    """Print elastic frequencies of the free container; the shapes go to modes.vtu and modes.svg."""
+    """Print elastic frequencies of the free container; the shapes go to modes.vtu and modes.svg.
+
+    Args:
+        count: Number of modes; default: solver.elastic_modes, or 20.
+        out: Folder of the results; default: outputs/NAME/modes.
+    """
     loaded = load_case(case, overrides)
     folder = out if out is not None else Path("outputs") / loaded.name / "modes"
     require_writable(folder, ELSEWHERE_OUT)
-    elements, free, modes_of = _free_bodies(loaded)
+    modes_of: Callable[[int], ElasticModes]  #: the lowest ones of its free bodies
+    if loaded.container.is_loose:
+        stack = discretise(loaded.with_values({"solver.model": "rigid"}))
+        elements, free, modes_of = stack.elements, [box.elements for box in stack.boxes], stack.lowest_modes
+    else:
+        elements = assemble(
+            build_container(loaded),
+            youngs_modulus=loaded.container.youngs_modulus_Pa,
+            poisson_ratio=loaded.container.poisson_ratio,
+            order=loaded.solver.order,
+        )
+        free, modes_of = [elements], partial(elastic_modes, elements)
     available = min(body.unknowns for body in free) - RIGID_MODES
     if count is not None and not 1 <= count <= available:
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
@@ -58,11 +72,8 @@ def modes(
         write_atomically(figure, svg_of(drawn))
     rows = elastic_mode_table(shapes)
     if as_json:
-        say(
-            json.dumps(
-                {"case": loaded.name, "modes": rows, "file": str(path), "figure": str(figure)}, indent=2
-            )
-        )
+        document = {"case": loaded.name, "modes": rows, "file": str(path), "figure": str(figure)}
+        say(json.dumps(document, indent=2))
         return
     bodies = "boxes, of equal boxes once" if loaded.container.is_loose else "container"
     say(f"{loaded.name}: elastic modes of the free {bodies}\n")
@@ -73,17 +84,3 @@ def modes(
             f"{row['ratio_to_first']:12.3f}"
         )
     say(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")
-
-
-def _free_bodies(case: Case) -> tuple[FiniteElements, list[FiniteElements], Callable[[int], ElasticModes]]:
-    """Elements of the container and of its free bodies, and what finds their lowest modes."""
-    if case.container.is_loose:
-        stack = discretise(case.with_values({"solver.model": "rigid"}))
-        return stack.elements, [box.elements for box in stack.boxes], stack.lowest_modes
-    elements = assemble(
-        build_container(case),
-        youngs_modulus=case.container.youngs_modulus_Pa,
-        poisson_ratio=case.container.poisson_ratio,
-        order=case.solver.order,
-    )
-    return elements, [elements], partial(elastic_modes, elements)

@@ -11,10 +11,9 @@ from cyclopts import Parameter
 from fem.case.data_files import split_channel
 from fem.case.plausible import doubts
 from fem.case.validation import CaseError
-from fem.cli.console import ELSEWHERE_TO, Quiet, RunFolder
+from fem.cli.console import ELSEWHERE_TO, Quiet
 from fem.records.files import read_record
 from fem.records.processing import Baseline, Processing, baseline_change, processed
-from fem.records.record import Component
 from fem.render.opengl import require_rendering
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
@@ -24,41 +23,36 @@ from fem.runtime.own_files import make_folder, place_in, write_atomically
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say
 
-Source = Annotated[
-    str,
-    Parameter(name="RUN", help="Folder of a run, such as outputs/my-stack, or a motion file; FILE#CHANNEL."),
-]
 SUFFIXES = (".png", ".svg")
 OF_A_FRAME_S = 0.09  #: to draw it, without a graphics card [s]
 
 
 def picture(
-    run: Source,
+    run: Annotated[str, Parameter(name="RUN")],
     /,
     *,
-    time: Annotated[
-        float | None, Parameter(help="Instant [s]; default: the frame of the largest rotation.")
-    ] = None,
-    unit: Annotated[
-        Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m"] | None,
-        Parameter(help="Of a motion file that does not state it."),
-    ] = None,
-    sample_interval: Annotated[float | None, Parameter(help="Of a motion file of one column [s].")] = None,
+    time: float | None = None,
+    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m"] | None = None,
+    sample_interval: float | None = None,
     quantity: Annotated[
-        Literal["acceleration", "displacement"], Parameter(help="Of a motion file.", show_default=False)
+        Literal["acceleration", "displacement"], Parameter(show_default=False)
     ] = "acceleration",
-    baseline: Annotated[Baseline, Parameter(help="Of a motion file.", show_default=False)] = "none",
-    to: Annotated[
-        Path | None,
-        Parameter(
-            help="The PNG, of a motion also SVG; default: figures/picture_TIME.png of the run, FILE.png."
-        ),
-    ] = None,
+    baseline: Annotated[Baseline, Parameter(show_default=False)] = "none",
+    to: Path | None = None,
 ) -> None:
     """Draw the deformed container on its floor, or a recorded motion with its response spectrum.
 
     Of a run: stress, contact pressure, time and rotation ratio. Of a motion file: acceleration, velocity, displacement
     and pseudo-acceleration for 5 % of damping.
+
+    Args:
+        run: Folder of a run, such as outputs/my-stack, or a motion file; FILE#CHANNEL.
+        time: Instant [s]; default: the frame of the largest rotation.
+        unit: Of a motion file that does not state it.
+        sample_interval: Of a motion file of one column [s].
+        quantity: Of a motion file.
+        baseline: Of a motion file.
+        to: The PNG, of a motion also SVG; default: figures/picture_TIME.png of the run, FILE.png.
     """
     path, channel = split_channel(Path(), run)
     if path.is_file():
@@ -75,7 +69,20 @@ def picture(
             for component, motion in zip(components, made, strict=True)
             for note in (*component.notes, *doubts(path.name, component, motion, scale=1.0, confirmed=False))
         ]
-        say(_write_motion(made, path, to))
+        # drawn beside its file, or where it is asked for
+        target = to if to is not None else Path(f"{path.stem}.png")
+        if target.suffix.lower() not in SUFFIXES:
+            raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
+        # Loads matplotlib.
+        figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("motions", "style"))
+        figure, drawn = figures.record_figure(made, path.name), io.BytesIO()
+        with writing_into(target.parent, ELSEWHERE_TO):
+            if target.suffix.lower() == ".svg":
+                write_atomically(target, style.svg_of(figure))
+            else:
+                figure.savefig(drawn, dpi=160)
+                write_atomically(target, drawn.getvalue())
+        say(target)
         say("\n".join(noted), end="\n" * bool(noted))
         for component in components:
             change = baseline_change(component, processing)
@@ -94,35 +101,25 @@ def picture(
         say(pictures.write_picture(opened, time=time, path=to))
 
 
-def _write_motion(components: list[Component], path: Path, to: Path | None) -> Path:
-    """Draw a record beside its file, or where it is asked for."""
-    target = to if to is not None else Path(f"{path.stem}.png")
-    if target.suffix.lower() not in SUFFIXES:
-        raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
-    # Loads matplotlib.
-    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("motions", "style"))
-    figure = figures.record_figure(components, path.name)
-    with writing_into(target.parent, ELSEWHERE_TO):
-        if target.suffix.lower() == ".svg":
-            write_atomically(target, style.svg_of(figure))
-        else:
-            drawn = io.BytesIO()
-            figure.savefig(drawn, dpi=160)
-            write_atomically(target, drawn.getvalue())
-    return target
-
-
 def movie(
-    run: RunFolder,
+    run: Annotated[Path, Parameter(name="RUN")],
     /,
     *,
-    to: Annotated[Path | None, Parameter(help="A .gif or .mp4; default: its figures/movie.gif.")] = None,
-    begin: Annotated[float, Parameter(name="--from", help="Begin at this time of the run [s].")] = 0.0,
-    until: Annotated[float, Parameter(help="End at this time of the run [s].")] = math.inf,
-    fps: Annotated[float, Parameter(help="Most frames a second.")] = 25.0,
+    to: Path | None = None,
+    begin: Annotated[float, Parameter(name="--from")] = 0.0,
+    until: float = math.inf,
+    fps: float = 25.0,
     quiet: Quiet = False,
 ) -> None:
-    """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg."""
+    """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg.
+
+    Args:
+        run: Folder of a run, such as outputs/my-stack.
+        to: A .gif or .mp4; default: its figures/movie.gif.
+        begin: Begin at this time of the run [s].
+        until: End at this time of the run [s].
+        fps: Most frames a second.
+    """
     opened, path = open_run(run), to or run / "figures/movie.gif"
     count = len(opened.fields)  # raises where there are no frames to draw
     require_writable(to.parent if to else run, ELSEWHERE_TO, BYTES_BESIDE)

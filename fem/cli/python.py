@@ -2,7 +2,10 @@
 
 Each does what the command of its name does, writes the same folder and gives its table: a mapping of columns as numpy
 arrays, which `pandas.DataFrame` takes as it is. What is finished in the folder is not computed again. In a script, call
-them behind `if __name__ == "__main__":`, as `fem.compute_many`.
+them behind `if __name__ == "__main__":`, as `fem.compute_many`. How it is computed is said by `Options`; a study raises
+
+- CaseError or MeshError, each a ValueError, for bad input;
+- FolderError or OutputError where the folder holds something else, or cannot be written.
 """
 
 from collections.abc import Callable
@@ -41,11 +44,6 @@ def compute_sweep(
     Args:
         sweep: a sweep file, or the name of a shipped sweep.
         folder: of the results; default: outputs/NAME.
-        options: see `Options`.
-
-    Raises:
-        CaseError, MeshError: bad input; a ValueError.
-        FolderError, OutputError: the folder holds something else, or cannot be written.
     """
     plan = load_sweep(sweep)
     return _table(run_sweep, plan, folder=folder or OUTPUTS / plan.name, options=options)
@@ -54,10 +52,7 @@ def compute_sweep(
 def compute_ensemble(
     ensemble: str | Path, folder: str | Path | None = None, **options: Unpack[Options]
 ) -> StudyTable:
-    """Sample the uncertain parameters of an ensemble; a row a point of its axes.
-
-    Arguments and errors as `compute_sweep`.
-    """
+    """Sample the uncertain parameters of an ensemble; a row a point of its axes. Arguments as `compute_sweep`."""
     plan = load_ensemble(ensemble)
     return _table(run_ensemble, plan, folder=folder or OUTPUTS / plan.name, options=options)
 
@@ -77,9 +72,6 @@ def compute_list(
         case: that its rows change.
         folder: of the results; default: outputs/NAME.
         margins: whose run is repeated for sure and margin: that of the weakest tenth (at least 30), all, or none.
-        options: see `Options`.
-
-    Raises: as `compute_sweep`.
     """
     path = Path(path)
     return _table(
@@ -105,9 +97,6 @@ def compute_response(
         first_Hz, last_Hz: lowest and highest frequency [Hz]; default: 3/11 and 30/11 of the case's own.
         count: frequencies, both ends included.
         starts: random states from which each frequency is begun as well.
-        options: see `Options`.
-
-    Raises: as `compute_sweep`.
     """
     request = request_of(case, first_Hz, last_Hz, count=count, starts=starts)
     return _table(run_response, request, folder=folder or OUTPUTS / f"{case.name}-response", options=options)
@@ -122,9 +111,6 @@ def assess_site(
         site: a site file, or the name of a shipped one.
         folder: of the results; default: outputs/NAME.
         quick: the set of motions and its repetitions alone.
-        options: see `Options`.
-
-    Raises: as `compute_sweep`.
     """
     request = load_site(site)
     return _table(run_site, request, folder=folder or OUTPUTS / request.name, quick=quick, options=options)

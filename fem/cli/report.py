@@ -4,15 +4,14 @@ import importlib
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
-
-from fem.cli.console import ELSEWHERE_TO, PAGE, SHORT_PAGE, Quiet, flag, print_to_pdf
+from fem.cli.console import ELSEWHERE_TO, PAGE, SHORT_PAGE, Quiet, option, print_to_pdf
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import FolderError, require_writable, writing_into
 from fem.runtime.own_files import make_folder, write_atomically
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say
 
+OF = "The folder of a run, a sweep, an ensemble, a response curve, a hall or a study, such as outputs/my-stack."
 SUFFIXES = (".html", ".htm")
 #: what makes the page of a study, by the file that marks its folder
 PAGES = {
@@ -29,28 +28,28 @@ WITH_SHORT = ("run.json", "assess.json", "hall.json")
 
 
 def report(
-    folder: Path,
+    folder: Annotated[Path, option(OF)],
     /,
     *,
-    to: Annotated[
-        Path | None, Parameter(help="The file; default: report.html, or report-short.html, in the folder.")
-    ] = None,
-    author: Annotated[str, Parameter(show_default=False, help="Author; may be filled in later.")] = "",
-    checker: Annotated[str, Parameter(show_default=False, help="Checker.")] = "",
-    revision: Annotated[str, Parameter(show_default=False, help="Revision.")] = "",
-    short: Annotated[
-        bool, flag("At most three printed pages, of a run; two, of a verification at a site.")
-    ] = False,
-    pdf: Annotated[bool, flag("Print the short page to a PDF beside it, by Chromium or Chrome.")] = False,
-    full: Annotated[bool, flag("With --pdf: the whole page.")] = False,
+    to: Path | None = None,
+    author: str = "",
+    checker: str = "",
+    revision: str = "",
+    short: bool = False,
+    pdf: bool = False,
+    full: bool = False,
     quiet: Quiet = False,
 ) -> None:
     """Make one HTML file that can be sent, read offline and printed.
 
-    Parameters
-    ----------
-    folder:
-        The folder of a run, a sweep, an ensemble, a response curve, a hall or a study, such as outputs/my-stack.
+    Args:
+        to: The file; default: report.html, or report-short.html, in the folder.
+        author: Author; may be filled in later.
+        checker: Checker.
+        revision: Revision.
+        short: At most three printed pages, of a run; two, of a verification at a site.
+        pdf: Print the short page to a PDF beside it, by Chromium or Chrome.
+        full: With --pdf: the whole page.
     """
     if not folder.is_dir():
         raise FolderError(
@@ -67,7 +66,19 @@ def report(
     short = short or (pdf and has_short and not full)
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
-    target = _target(to if to is not None else folder / (SHORT_PAGE if short else PAGE))
+    # where the page goes, checked before anything is computed; never a file of results
+    target = to if to is not None else folder / (SHORT_PAGE if short else PAGE)
+    if target.suffix.lower() not in SUFFIXES:
+        raise FolderError(
+            f"--to {target}: the page is HTML; give a name that ends in {' or '.join(SUFFIXES)}"
+        )
+    if target.is_dir():
+        raise FolderError(f"--to {target}: this is a folder; give the name of a file in it")
+    try:
+        make_folder(target.parent)
+    except OSError as error:
+        reason = f"the folder cannot be made ({error.strerror or error}); choose another place"
+        raise FolderError(f"--to {target}: {reason}") from None
     require_writable(target.parent, ELSEWHERE_TO, BYTES_BESIDE)
     reporter = ScreenReporter(quiet=quiet)
     pages = importlib.import_module("fem.report.run_page")
@@ -96,19 +107,3 @@ def report(
     say(target)
     if pdf:
         say(print_to_pdf(target))
-
-
-def _target(path: Path) -> Path:
-    """Where the page goes, checked before anything is computed; never a file of results."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise FolderError(f"--to {path}: the page is HTML; give a name that ends in {' or '.join(SUFFIXES)}")
-    if path.is_dir():
-        raise FolderError(f"--to {path}: this is a folder; give the name of a file in it")
-    try:
-        make_folder(path.parent)
-    except OSError as error:
-        reason = error.strerror or error
-        raise FolderError(
-            f"--to {path}: the folder cannot be made ({reason}); choose another place"
-        ) from None
-    return path

@@ -1,13 +1,15 @@
-"""`list`, `init`, `docs`: what is installed with the program, cases, files to start from, and documents."""
+"""`list`, `init`, `schema`, `docs`, `doctor`: what is installed, files to start from, documents, what is missing."""
 
 import importlib
 import json
+import platform
+import shutil
 import tomllib
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
 from textwrap import fill
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -17,11 +19,18 @@ from fem.cli.console import WIDTH, AsJson
 from fem.results.errors import FolderError
 from fem.runtime.own_files import created
 from fem.runtime.terminal import say
+from fem.runtime.threads import cores
 from fem.runtime.user_files import read_text
 
 START = "start"  #: the README of the project, which is part of its metadata wherever it is installed
 #: the packages whose folders hold a README for each room, and further pages
 PACKAGES = ("fem", "mesh", "contact")
+DISTRIBUTIONS = (
+    *("unanchored", "numpy", "scipy", "numba", "scikit-fem", "meshio", "pyvista", "matplotlib"),
+    *("pydantic", "cyclopts", "rich", "jinja2", "imageio", "filelock"),
+)
+INSTALL_PACKAGES = "python -m pip install --upgrade unanchored"
+LEAST_FREE_GB = 1.0
 
 
 def list_cases(*, as_json: AsJson = False) -> None:
@@ -46,18 +55,12 @@ def list_cases(*, as_json: AsJson = False) -> None:
     say("python -m fem init NAME writes any of them to a file.")
 
 
-def init(
-    name: str | None = None,
-    /,
-    *,
-    to: Annotated[Path | None, Parameter(help="The file; default: NAME.toml, or case.toml.")] = None,
-) -> None:
+def init(name: str | None = None, /, *, to: Path | None = None) -> None:
     """Write a commented case, sweep, ensemble or site file to start from; an existing file is never overwritten.
 
-    Parameters
-    ----------
-    name:
-        A shipped case, sweep, ensemble or site (see `python -m fem list`); default: a case file with every key.
+    Args:
+        name: A shipped case, sweep, ensemble or site (see `python -m fem list`); default: a case file with every key.
+        to: The file; default: NAME.toml, or case.toml.
     """
     of = next((each for each in COLLECTIONS if name in each.names), CASES)
     if name is None:  # a case loads numpy
@@ -95,15 +98,32 @@ def _for_another_box(text: str) -> str:
     return "".join(kept)
 
 
-def docs(room: str = "", /) -> None:
+def schema(kind: Literal["case", "sweep", "ensemble", "site"] = "case", /) -> None:
+    """Print the JSON schema of a kind of file: keys, types, units, ranges, defaults.
+
+    Args:
+        kind: Kind of file.
+    """
+    # The models take long to load, those of the other kinds longest.
+    if kind == "case":
+        model = importlib.import_module("fem.case.case").Case
+    else:
+        model = importlib.import_module("fem.cli.file_models").FILE_MODELS[kind]
+    say(json.dumps(model.model_json_schema(by_alias=True), indent=2))
+
+
+def docs(room: Annotated[str, Parameter(show_default=True)] = "", /) -> None:
     """Print where the documents are, for each room of the program, or the text of one.
 
-    Parameters
-    ----------
-    room:
-        Of which to print the text, such as start, case, keys or contact.
+    Args:
+        room: Of which to print the text, such as start, case, keys or contact.
     """
-    places = found()
+    places = {}  #: of documents, by the names of their rooms; of further pages by their own
+    for package in PACKAGES:
+        spec = find_spec(package)
+        for folder in (spec and spec.submodule_search_locations) or ():
+            for path in sorted(Path(folder).rglob("*.md")):
+                places[path.parent.name if path.stem == "README" else path.stem] = path
     if room == START:
         say(str(metadata.metadata("unanchored").json["description"]))
     elif not room:
@@ -118,12 +138,41 @@ def docs(room: str = "", /) -> None:
         say(read_text(places[room]))
 
 
-def found() -> dict[str, Path]:
-    """The documents, by the names of their rooms; further pages by their own."""
-    places = {}
-    for package in PACKAGES:
-        spec = find_spec(package)
-        for folder in (spec and spec.submodule_search_locations) or ():
-            for path in sorted(Path(folder).rglob("*.md")):
-                places[path.parent.name if path.stem == "README" else path.stem] = path
-    return places
+def doctor(*, as_json: AsJson = False) -> None:
+    """Report versions, rendering, cores and free disk, and how to install what is missing."""
+    versions = {name: _version(name) for name in DISTRIBUTIONS}
+    opengl = importlib.import_module("fem.render.opengl")
+    rendering = opengl.probe_rendering()
+    free = shutil.disk_usage(Path.cwd()).free / 1e9
+    remedies = []
+    if missing := [name for name, version in versions.items() if version is None]:
+        remedies.append(f"missing: {', '.join(missing)}; {INSTALL_PACKAGES}")
+    if rendering is not None:
+        remedies.append(f"pictures and movies do not work (runs do): {rendering}; {opengl.MEND}")
+    if free < LEAST_FREE_GB:
+        remedies.append(f"only {free:.2f} GB free in {Path.cwd()}: write elsewhere with --out")
+    report: dict[str, Any] = {
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "versions": versions,
+        "rendering": rendering is None,
+        "threads": cores(),
+        "disk_free_GB": round(free, 2),
+        "remedies": remedies,
+    }
+    if as_json:
+        say(json.dumps(report, indent=2))
+        return
+    rows = {name: version or "missing" for name, version in versions.items()}
+    rows["rendering"] = "works" if rendering is None else "does not work"
+    rows |= {"threads": report["threads"], "disk": f"{report['disk_free_GB']:g} GB free here"}
+    say(f"python {report['python']} on {report['platform']}")
+    say("\n".join(f"  {name:<12} {value}" for name, value in rows.items()))
+    say("\n" + "\n".join(remedies or ["nothing is missing"]))
+
+
+def _version(name: str) -> str | None:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return None

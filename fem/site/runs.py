@@ -24,10 +24,8 @@ from fem.site.result import MOTIONS, REPEATED, SET, RunKey, SiteBody, SiteRun
 from fem.study.design import CaseMaker
 from fem.study.runner import Row
 
-CONFIRMING, MOST_DECIDING = (
-    "reduced",
-    2,
-)  #: model with which the deciding runs are repeated, and how many at most
+CONFIRMING = "reduced"  #: model with which the deciding runs are repeated
+MOST_DECIDING = 2  #: and how many of them there are at most
 NOT_COMPUTED = "below uplift and slip of a rigid body: not computed"
 #: the columns that tell which run a row is of
 KEYS = (

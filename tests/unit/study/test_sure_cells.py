@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from fem.run.band import key_of
 from small_sweep import SMALL
 
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.results.outcome import Ending
+from fem.run.band import key_of
 from fem.run.compute import compute
 from fem.run.simulation import run_without_history
 from fem.study.axes import Axis
