@@ -32,14 +32,7 @@ TITLES = {
     "study": ("Study", "The paper, claim by claim"),
 }
 #: conclusions of a study, in the order in which they are told
-FIRST = (
-    "refuted",
-    "confirmed within stated bounds",
-    "not computed",
-    "misprint",
-    "confirmed",
-    "remark",
-)
+FIRST = ("refuted", "confirmed within stated bounds", "not computed", "misprint", "confirmed", "remark")
 Row = Mapping[str, Any]  #: of a document
 Document = Mapping[str, Any]
 

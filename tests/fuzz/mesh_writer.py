@@ -22,10 +22,7 @@ def write_container_mesh(path: Path, mesh: ContainerMesh) -> None:
         case ".msh":
             # Physical groups count from 1; 0 means none.
             written.field_data = {region.name.lower(): np.array([region + 1, 2]) for region in present}
-            written.cell_data = {
-                "gmsh:physical": [mesh.region + 1],
-                "gmsh:geometrical": [mesh.region + 1],
-            }
+            written.cell_data = {"gmsh:physical": [mesh.region + 1], "gmsh:geometrical": [mesh.region + 1]}
             meshio.gmsh.write(path, written, fmt_version="2.2", binary=False, float_fmt=".17g")
         case ".inp":
             written.cell_sets = {

@@ -9,14 +9,7 @@ from evidence.findings import Finding, at_least, at_most
 from paper import criteria, maps
 from paper.cases import BOX, SHELL, STACK, PaperCase, friction
 from paper.claims import ClaimFigure, ClaimTable, Evidence, claim, outcomes, table
-from paper.dimensions import (
-    ANGULAR_FREQUENCY,
-    FREQUENCY_PARAMETER,
-    GRAVITY,
-    HALF_WIDTH,
-    PAPER_MU,
-    UPLIFT,
-)
+from paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, PAPER_MU, UPLIFT
 from paper.experiments import Experiments
 from paper.figures import curve, draw_curves, draw_map
 

@@ -9,14 +9,7 @@ import numpy as np
 from evidence.findings import Finding, at_least, at_most, equal, failures
 from paper.cases import BOX, FOR_MAPS, G_TEN, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
 from paper.claims import Evidence, claim, outcomes
-from paper.dimensions import (
-    ANGULAR_FREQUENCY,
-    GRAVITY,
-    HALF_WIDTH,
-    PLATEAU_PEAK,
-    STATED_PEAK,
-    UPLIFT,
-)
+from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, PLATEAU_PEAK, STATED_PEAK, UPLIFT
 from paper.experiments import Experiments, capped_ratio, stands
 from paper.figures import curve, draw_curves
 from verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, paper_checks

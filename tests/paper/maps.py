@@ -16,14 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from paper.cases import FOR_MAPS, SHELL, STACK, PaperCase, friction
 from paper.criteria import Contingency, Criterion, MapMotion, contingency, motion_of
-from paper.dimensions import (
-    ANGULAR_FREQUENCY,
-    BOX_WEIGHT,
-    FREQUENCY_PARAMETER,
-    PAPER_MU,
-    PLATEAU_PEAK,
-    WIDTH,
-)
+from paper.dimensions import ANGULAR_FREQUENCY, BOX_WEIGHT, FREQUENCY_PARAMETER, PAPER_MU, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments, stands
 
 from fem.figures.heat_map import MapAxis

@@ -181,11 +181,7 @@ def test_the_report_of_a_study_is_signed(three, tmp_path):
 
 @pytest.mark.parametrize(
     ("key", "value", "words"),
-    [
-        ("quote", 1, "is no text"),
-        ("verdict", None, "is missing"),
-        ("comparisons", {}, "is no list"),
-    ],
+    [("quote", 1, "is no text"), ("verdict", None, "is missing"), ("comparisons", {}, "is no list")],
 )
 def test_a_damaged_study_is_refused_with_file_and_key(three, tmp_path, key, value, words):
     document = check_claims(tmp_path, Experiments(), claims=three[0][:1])

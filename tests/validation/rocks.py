@@ -17,14 +17,7 @@ from evidence.findings import Finding, prediction
 from validation import drawings, shake_tests
 from validation.bodies import rigid_case, specimen
 from validation.experiments import Experiment, Predictor
-from validation.vote import (
-    Block,
-    Vote,
-    brier,
-    by_threshold,
-    probabilities,
-    with_neighbours,
-)
+from validation.vote import Block, Vote, brier, by_threshold, probabilities, with_neighbours
 
 from fem.case.case import Case
 from fem.case.validation import CaseError

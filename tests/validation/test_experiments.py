@@ -7,14 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from validation import cube, impacts, pulses, rocks
-from validation.shake_tests import (
-    ROCK,
-    ROCK_MOTIONS,
-    Body,
-    ShakeTest,
-    ShakeTestError,
-    read_series,
-)
+from validation.shake_tests import ROCK, ROCK_MOTIONS, Body, ShakeTest, ShakeTestError, read_series
 from validation.suite import document_of, require, run_validation
 from validation.vote import Block
 

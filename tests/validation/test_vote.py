@@ -11,15 +11,7 @@ from runs import STACK
 from validation import contents
 from validation.bodies import cross_validated, specimen
 from validation.experiments import Experiment, document_of, in_a_sentence
-from validation.vote import (
-    SHARE,
-    Block,
-    Vote,
-    best_threshold,
-    by_threshold,
-    probabilities,
-    with_neighbours,
-)
+from validation.vote import SHARE, Block, Vote, best_threshold, by_threshold, probabilities, with_neighbours
 
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions

@@ -34,6 +34,7 @@ STIFFNESSES, CAPS = (2.8e9, 8.1e9), (0.3e6, 0.6e6, 1.2e6)
 #: damping ratios of the contact, with the tolerance of Housner's restitution
 RATIOS = {(0.0, 0.05): 2e-2, (0.3, 1.0): 8e-3}
 OMEGA = 6.928
+MOST_ATTEMPTS = 1_000_000  #: of steps, without a fault some thousands
 
 
 def landed(share: float, step: float, growth: float = 0.0) -> tuple[Flight, float, float]:
@@ -149,7 +150,10 @@ def area_under_the_curves(model: Model) -> float:
     state, area = model.run, 0.0
     while float(state.clock[0].time) < model.duration:
         force, crushed = state.old.force[:, 1].copy(), state.old.crushed.copy()
-        state.clock[0].attempt_limit = int(state.clock[0].steps + state.clock[0].rejected) + 1
+        attempts = int(state.clock[0].steps + state.clock[0].rejected)
+        if attempts > MOST_ATTEMPTS:
+            raise ArithmeticError(f"it makes no progress at {state.clock[0].time} s")
+        state.clock[0].attempt_limit = attempts + 1
         advance_body(model.body, state, model.duration)
         state.clock[0].samples_drained = state.clock[0].samples
         area += float((0.5 * (force + state.old.force[:, 1]) * (state.old.crushed - crushed)).sum())

@@ -14,12 +14,7 @@ RELEASED = 0.5 * BLOCK.slenderness_angle
 
 def turned(places, *, side=1.0):
     return next_turning_point(
-        BLOCK,
-        places=places,
-        stiffness=5e6,
-        relaxation_time=7e-3,
-        rotation=side * RELEASED,
-        duration=2.0,
+        BLOCK, places=places, stiffness=5e6, relaxation_time=7e-3, rotation=side * RELEASED, duration=2.0
     )
 
 

@@ -43,11 +43,14 @@ def model_of():
 
 
 def step_in_slices(model):
-    while model.run.clock[0].time < DURATION:
+    clock = model.run.clock[0]
+    clock.attempt_limit = 200_000
+    while clock.time < DURATION:
         status = advance_compiled(model.body, model.run, DURATION)
-        model.run.clock[0].samples_drained = model.run.clock[0].samples
+        clock.samples_drained = clock.samples
         if status != REACHED:
             return status
+        assert clock.steps + clock.rejected < clock.attempt_limit, "it makes no progress"
     return REACHED
 
 
