@@ -1,6 +1,6 @@
 """Loose stacks: against a slider, a bolted stack and two rigid blocks that are followed from event to event.
 
-The two blocks (`two_block_motion`) do not slide, and their impacts are plastic, everywhere at once:
+The two blocks (`two_blocks`) do not slide, and their impacts are plastic, everywhere at once:
 the limit of stiff, well damped contact. So
 their rows refine the penalty.
 """
@@ -13,8 +13,7 @@ import runs
 from evidence.findings import Convergence, analytic, computed
 from floors import half_sine_pulse, sine_floor
 from rigid_slider import RigidSlider, simulate_sliding
-from two_block_motion import TwoBlockMotion, simulate_two_blocks
-from two_blocks import Pattern, StackedBlock, TwoBlockStack, energy
+from two_blocks import Pattern, StackedBlock, TwoBlockMotion, TwoBlockStack, energy, simulate_two_blocks
 from verification.checks import PROGRAM, Findings, check
 
 from fem.results.history import History

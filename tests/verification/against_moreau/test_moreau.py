@@ -7,8 +7,7 @@ import pytest
 from floors import half_sine_pulse, sine_floor
 from moreau import Boxes, move_boxes, slide_and_rock, slide_and_rock_batch
 from rigid_slider import RigidSlider, simulate_sliding
-from two_block_motion import simulate_two_blocks
-from two_blocks import StackedBlock, TwoBlockStack
+from two_blocks import StackedBlock, TwoBlockStack, simulate_two_blocks
 
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from floors import sine_floor, still_floor
-from two_block_motion import simulate_two_blocks
 from two_blocks import (
     Footing,
     Pattern,
@@ -13,6 +12,7 @@ from two_blocks import (
     TwoBlockStack,
     contact_normals,
     energy,
+    simulate_two_blocks,
 )
 
 from contact.reference.floor_acceleration import Acceleration
