@@ -49,7 +49,7 @@ from fem.study.sweep import run_sweep
 
 sys.path.append(str(Path(__file__).parents[1] / "rigs"))
 from case_rows import run_cases
-from moreau import slide_and_rock_batch
+from moreau import slide_and_rock
 
 Measured = float | tuple[float, str]  #: the number of the table, and what else was found
 
@@ -213,7 +213,7 @@ def over_moreau(name: str) -> Measured:
     def moreau() -> None:
         block, contact, motion = block_of(model), case.contact, case.motion
         inertia = (block.inertia_ratio - 1.0) * block.radius**2
-        slide_and_rock_batch(
+        slide_and_rock(
             np.tile([block.half_width, block.centroid_height, 1.0 / inertia], (ROWS, 1)),
             np.tile([contact.mu_static, contact.mu_kinetic], (ROWS, 1)),
             case.gravity_m_s2,

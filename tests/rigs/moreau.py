@@ -303,100 +303,68 @@ def one_contact(nn, nt, tt, un, ut, mu):
 
 
 @numba.njit(cache=True)
-def slide_and_rock(b, c, ratio, mu_static, mu_kinetic, gravity, along, h, q, v):
-    """One box on the floor, per unit mass, until the end or until it has overturned.
-
-    Args:
-        b, c: half width, height of the mass centre [m].
-        ratio: mass over inertia about the mass centre [1/m2].
-        along: acceleration of the floor at the middle of each step [m/s2].
-        q, v: x, z, rotation and their rates, shape (3,), at the start; at the end on return.
-
-    Returns:
-        Largest |rotation| [rad], largest |slip| of the loaded corners [m], whether it has overturned.
-    """
-    x, z, angle = q[0], q[1], q[2]
-    u, w, spin = v[0], v[1], v[2]
-    mu, slip, most_angle, most_slip = mu_static, 0.0, 0.0, 0.0
-    half, pull = 0.5 * h, h * gravity
-    for k in range(along.size):
-        angle += half * spin
-        z += half * w
-        x += half * u
-        u -= h * along[k]
-        w -= pull
-        cosine, sine = math.cos(angle), math.sin(angle)
-        drop, lift = c * cosine, b * sine
-        # z over x of a corner from the mass centre: left (-b c - c s, ..), right (b c - c s, ..)
-        left, right = z - drop + lift <= CLOSED, z - drop - lift <= CLOSED
-        if left or right:
-            slides = 0.0
-            arm = -c * cosine  # height of the corners, but for the lift
-            back, ahead = -b * cosine - c * sine, b * cosine - c * sine
-            flat = False
-            if left and right:  # the whole base: velocities of a box that lies
-                normal = -w
-                turn = -spin / ratio  # impulse needed about the mass centre
-                friction = -u
-                if abs(friction) > mu * normal:
-                    friction = math.copysign(mu * normal, friction)
-                    slides = math.copysign(1.0, -friction)
-                # moment: friction x arm - (normal_left back + normal_right ahead)
-                needed = turn - friction * arm
-                on_right = (-needed - normal * back) / (ahead - back)
-                flat = normal > 0.0 and 0.0 <= on_right <= normal
-                if not flat:
-                    slides = 0.0
-                else:
-                    slip += half * (u + h * along[k] + u + friction)
-                    u += friction
-                    w, spin = 0.0, 0.0
-            if not flat:
-                if left and right:  # the corner that goes down is the one to stand on
-                    left = w - spin * back < w - spin * ahead
-                offset, rise = (back, arm + lift) if left else (ahead, arm - lift)
-                nn, nt, tt = 1.0 + ratio * offset * offset, -ratio * offset * rise, 1.0 + ratio * rise * rise
-                normal, friction = one_contact(nn, nt, tt, w - spin * offset, u + spin * rise, mu)
-                u += friction
-                w += normal
-                spin += ratio * (friction * rise - normal * offset)
-                if normal > 0.0:
-                    if abs(friction) >= mu * normal * (1.0 - 1e-9):
-                        slides = 1.0
-                    slip += h * (u + spin * rise)
-            mu = mu_kinetic if slides != 0.0 else mu_static
-        x += half * u
-        z += half * w
-        angle += half * spin
-        most_angle, most_slip = max(most_angle, abs(angle)), max(most_slip, abs(slip))
-        if most_angle > LARGEST_ROTATION:
-            break
-    q[0], q[1], q[2] = x, z, angle
-    v[0], v[1], v[2] = u, w, spin
-    return most_angle, most_slip, most_angle > LARGEST_ROTATION
-
-
-@numba.njit(cache=True)
-def slide_and_rock_batch(block, mu, gravity, amplitude, frequency, jerk, h, steps, found):
-    """Runs of boxes on floors A sin(Omega t).
+def slide_and_rock(block, mus, gravity, amplitude, frequency, jerk, h, steps, found):
+    """Runs of one box each on floors A sin(Omega t), each until the end or until it has overturned.
 
     Args:
         block: half width, height of the mass centre, mass over inertia about it; shape (runs, 3).
-        mu: static, kinetic; shape (runs, 2).
+        mus: static, kinetic friction; shape (runs, 2).
         amplitude, frequency: A [m], Omega [rad/s]; shape (runs,).
         jerk: whether the boxes are at rest when the floor starts; else they move with it.
-        found: largest |rotation|, largest |slip|, overturned; shape (runs, 3), written.
+        found: largest |rotation| [rad], largest |slip| of the loaded corners [m], overturned; (runs, 3), written.
     """
-    q, v, along = np.zeros(3), np.zeros(3), np.empty(steps)
+    half, pull = 0.5 * h, h * gravity
     for r in range(amplitude.size):
-        rate = frequency[r]
+        rate, b, c, ratio, mu = frequency[r], block[r, 0], block[r, 1], block[r, 2], mus[r, 0]
+        u = -amplitude[r] * rate if jerk else 0.0
+        z, angle, w, spin, slip, most_angle, most_slip = c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for k in range(steps):
-            along[k] = -amplitude[r] * rate * rate * math.sin(rate * (k + 0.5) * h)
-        b, c, ratio = block[r, 0], block[r, 1], block[r, 2]
-        q[0] = q[2] = v[1] = v[2] = 0.0
-        q[1], v[0] = c, -amplitude[r] * rate if jerk else 0.0
-        angle, slip, fell = slide_and_rock(b, c, ratio, mu[r, 0], mu[r, 1], gravity, along, h, q, v)
-        found[r, 0], found[r, 1], found[r, 2] = angle, slip, fell
+            angle += half * spin
+            z += half * w
+            push = h * -amplitude[r] * rate * rate * math.sin(rate * (k + 0.5) * h)
+            u -= push
+            w -= pull
+            cosine, sine = math.cos(angle), math.sin(angle)
+            drop, lift = c * cosine, b * sine
+            left, right = z - drop + lift <= CLOSED, z - drop - lift <= CLOSED
+            if left or right:
+                slides = 0.0
+                arm = -c * cosine  # height of the corners, but for the lift
+                back, ahead = -b * cosine - c * sine, b * cosine - c * sine
+                flat = False
+                if left and right:  # the whole base: velocities of a box that lies
+                    normal, friction = -w, -u
+                    if abs(friction) > mu * normal:
+                        friction = math.copysign(mu * normal, friction)
+                    # moment: friction x arm - (normal_left back + normal_right ahead)
+                    on_right = (spin / ratio + friction * arm - normal * back) / (ahead - back)
+                    flat = normal > 0.0 and 0.0 <= on_right <= normal
+                    if flat:
+                        slides = 1.0 if friction != -u else 0.0
+                        slip += half * (u + push + u + friction)
+                        u += friction
+                        w, spin = 0.0, 0.0
+                if not flat:
+                    if left and right:  # the corner that goes down is the one to stand on
+                        left = w - spin * back < w - spin * ahead
+                    offset, rise = (back, arm + lift) if left else (ahead, arm - lift)
+                    nn, tt = 1.0 + ratio * offset * offset, 1.0 + ratio * rise * rise
+                    nt, un, ut = -ratio * offset * rise, w - spin * offset, u + spin * rise
+                    normal, friction = one_contact(nn, nt, tt, un, ut, mu)
+                    u += friction
+                    w += normal
+                    spin += ratio * (friction * rise - normal * offset)
+                    if normal > 0.0:
+                        if abs(friction) >= mu * normal * (1.0 - 1e-9):
+                            slides = 1.0
+                        slip += h * (u + spin * rise)
+                mu = mus[r, 1] if slides != 0.0 else mus[r, 0]
+            z += half * w
+            angle += half * spin
+            most_angle, most_slip = max(most_angle, abs(angle)), max(most_slip, abs(slip))
+            if most_angle > LARGEST_ROTATION:
+                break
+        found[r, 0], found[r, 1], found[r, 2] = most_angle, most_slip, most_angle > LARGEST_ROTATION
 
 
 @numba.njit(cache=True)
