@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from closed_forms_overturning import sustained_sine_threshold_slender
+from closed_forms import sustained_sine_threshold_slender
 from evidence.findings import at_least, at_most
 from first_swing import first_swing_threshold
 from floors import sine_floor

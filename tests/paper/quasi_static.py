@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from closed_forms_rocking import holding_acceleration
+from closed_forms import holding_acceleration
 from evidence.findings import Finding, at_least, at_most, equal
 from paper.cases import BOX, FOR_MAPS, NO_SLIDING, RIGID, SHELL, STACK, PaperCase, friction
 from paper.claims import Evidence, claim

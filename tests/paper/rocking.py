@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from closed_forms_rocking import quarter_period
+from closed_forms import quarter_period
 from evidence.findings import at_least, at_most, equal
 from paper.cases import BOX, FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
 from paper.claims import Evidence, claim

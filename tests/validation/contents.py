@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from evidence.findings import prediction
 from validation.bodies import rigid_case
-from validation.experiments import Experiment, Predictor
-from validation.tables import measured_table
+from validation.experiments import Experiment, Predictor, measured_table
 
 from fem.model.container import discretise
 from fem.model.model import build_model

@@ -17,8 +17,7 @@ from evidence.findings import prediction
 from runs import finish, placed
 from validation import drawings
 from validation.bodies import cross_validated, rigid_case, specimen
-from validation.experiments import Experiment, Picture
-from validation.tables import measured_table
+from validation.experiments import Experiment, Picture, measured_table
 
 from contact.interface.equilibrium import Stance
 from fem.case.case import Case

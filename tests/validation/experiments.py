@@ -1,7 +1,12 @@
-"""An experiment with its findings: predictions beside measurements, by criteria that were set beforehand."""
+"""An experiment with its findings: predictions beside measurements, by criteria that were set beforehand.
 
+Measured numbers are in `tests/validation/data`; the comment of each table names its source and licence.
+"""
+
+import csv
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from evidence.findings import Finding, failures
@@ -90,3 +95,9 @@ def in_a_sentence(experiments: Sequence[Experiment]) -> str:
     if skipped := [experiment.title for experiment in experiments if experiment.not_computed]:
         parts.append(f"{len(skipped)} of {len(experiments)} experiments not computed ({', '.join(skipped)})")
     return "; ".join(parts) + "."
+
+
+def measured_table(name: str) -> list[dict[str, str]]:
+    """Rows of a table, by column."""
+    text = (Path(__file__).parent / "data" / name).read_text(encoding="utf-8")
+    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))

@@ -12,8 +12,7 @@ import numpy as np
 from evidence.findings import prediction
 from runs import run
 from validation.bodies import rigid_case
-from validation.experiments import Experiment, Predictor
-from validation.tables import measured_table
+from validation.experiments import Experiment, Predictor, measured_table
 
 PRESETS = {"concrete": "concrete C25/30", "rubber": "rubber mat"}
 DENSITY = 2400.0  #: of a block of concrete [kg/m3]

@@ -14,8 +14,7 @@ from evidence.findings import prediction
 from runs import with_motion
 from validation import drawings
 from validation.bodies import cross_validated, rigid_case
-from validation.experiments import Experiment, Picture, Predictor
-from validation.tables import measured_table
+from validation.experiments import Experiment, Picture, Predictor, measured_table
 
 from contact.motion.kernel import PIECEWISE, as_floor_motion
 from fem.case.case import Case

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from validation.tables import measured_table
+from validation.experiments import measured_table
 
 from fem.case.files import LARGEST_FILE
 from fem.records import source as records

@@ -6,11 +6,10 @@ What a row of `verification` holds the program to is not repeated here.
 import math
 from collections import Counter
 
-import closed_forms_overturning as overturning
+import closed_forms as overturning
 import numpy as np
 import pytest
-from closed_forms_rocking import peak_after_impacts, quarter_period
-from closed_forms_sliding import steady_stroke
+from closed_forms import peak_after_impacts, quarter_period, steady_stroke
 from first_swing import first_swing_threshold
 from floors import half_sine_pulse, one_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from rigid_slider import RigidSlider, simulate_sliding

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import runs
 from block_on_springs import largest_corner_force
-from closed_forms_rocking import damped_drop_restitution, drop_force
+from closed_forms import damped_drop_restitution, drop_force
 from evidence.findings import Convergence, analytic, computed
 from meshes import graded_block, grid_mesh
 from verification.bodies import Flight, free_run, full_body

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import partial
 
-import closed_forms_overturning
+import closed_forms
 import numpy as np
 import runs
 from evidence.findings import analytic, computed
@@ -48,7 +48,7 @@ def initiation() -> Findings:
     wrong: list[str] = []
     containers: dict[float, Container] = {}
     for lam, ratio, mu_static, mu_kinetic in initiation_grid():
-        expected = closed_forms_overturning.initiation_mode(
+        expected = closed_forms.initiation_mode(
             acceleration_ratio=ratio, slenderness=lam, mu_static=mu_static, mu_kinetic=mu_kinetic
         ).value
         first = first_motion(lam, ratio, mu_static, mu_kinetic, containers)
@@ -74,9 +74,7 @@ def initiation() -> Findings:
 def sustained_sine() -> Findings:
     """A harmonic floor without end: slender sqrt(1 + w^2), and the stack's own exact values."""
     for w, exact in ((1.0, 1.41347), (6.0, 6.21218)):
-        source = (
-            f"event-driven block; slender {closed_forms_overturning.sustained_sine_threshold_slender(w):.5f}"
-        )
+        source = f"event-driven block; slender {closed_forms.sustained_sine_threshold_slender(w):.5f}"
         for name, (values, tolerance) in MODELS.items():
             peak = threshold(partial(sine, w=w), exact * UPLIFT, values) / UPLIFT
             case = f"{name}: harmonic floor, w = {w:g}"
@@ -88,8 +86,8 @@ def pulses() -> Findings:
     """Half a sine and a whole one."""
     w = 3.0
     for shape, angle, slender, acceleration in (
-        ("half-sine", math.pi, closed_forms_overturning.half_sine_threshold_slender(w), half_sine_pulse),
-        ("sine", 2.0 * math.pi, closed_forms_overturning.one_sine_threshold_slender(w), one_sine_pulse),
+        ("half-sine", math.pi, closed_forms.half_sine_threshold_slender(w), half_sine_pulse),
+        ("sine", 2.0 * math.pi, closed_forms.one_sine_threshold_slender(w), one_sine_pulse),
     ):
         length = angle / (w * RATE)
         exact = (
@@ -114,7 +112,7 @@ def pulses() -> Findings:
 @check("overturning", "overturning by a rectangular pulse")
 def rectangular() -> Findings:
     """Shortest rectangular pulse of twice the uplift acceleration that overturns."""
-    exact = closed_forms_overturning.rectangular_pulse_duration(BLOCK, 2.0 * UPLIFT)
+    exact = closed_forms.rectangular_pulse_duration(BLOCK, 2.0 * UPLIFT)
     compared = "shortest length that overturns without impact [s]"
     source = "work of the pulse = g R (1 - cos al); exact quadrature"
     for name, (values, tolerance) in MODELS.items():
@@ -126,7 +124,7 @@ def rectangular() -> Findings:
 @check("overturning", "overturning by a velocity step")
 def velocity_step() -> Findings:
     """Sudden floor velocity that overturns; here the container gets it, relative to the floor."""
-    exact = closed_forms_overturning.velocity_step_threshold(BLOCK)
+    exact = closed_forms.velocity_step_threshold(BLOCK)
     compared = "least velocity that overturns without impact [m/s]"
     source = "kinetic energy of the kick = M g R (1 - cos al)"
     for name, (values, tolerance) in MODELS.items():
@@ -161,7 +159,7 @@ def initiation_grid() -> Iterator[tuple[float, float, float, float]]:
         mu_kinetic = share * mu_static
         boundaries = [(ratio, 1.0 / lam), (mu_kinetic, 1.0 / lam)]
         if ratio > 1.0 / lam:
-            boundaries.append((mu_static, closed_forms_overturning.rocking_friction(ratio, lam)))
+            boundaries.append((mu_static, closed_forms.rocking_friction(ratio, lam)))
         else:
             boundaries.append((ratio, mu_static))
         if all(abs(value / limit - 1.0) > 0.05 for value, limit in boundaries):

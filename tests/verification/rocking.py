@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import runs
-from closed_forms_rocking import (
+from closed_forms import (
     holding_acceleration,
     impact_friction_need,
     peak_after_impacts,

@@ -11,7 +11,7 @@ from itertools import groupby, product
 
 import numpy as np
 import runs
-from closed_forms_sliding import incline_acceleration, never_stops_ratio, pulse_slip, steady_stroke
+from closed_forms import incline_acceleration, never_stops_ratio, pulse_slip, steady_stroke
 from evidence.findings import Finding, analytic, computed
 from floors import half_sine_pulse, sine_floor
 from rigid_slider import RigidSlider, simulate_sliding

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from closed_forms_rocking import symmetric_orbit_slender
-from closed_forms_sliding import steady_stroke
+from closed_forms import steady_stroke, symmetric_orbit_slender
 from floors import sine_floor, still_floor
 from runs import STACK
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from block_on_springs import evenly_spaced, next_turning_point
-from closed_forms_rocking import peak_after_impacts
+from closed_forms import peak_after_impacts
 
 from contact.reference.rigid_block import RigidBlock
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from container_runs import SLENDERNESS_ANGLE, first_impact, stack, times
-from runs import Finished
+from runs import SLENDERNESS, Finished, first_impact, stack, times
 
 import fem.model.model
 from fem.case import columns
@@ -53,7 +52,7 @@ def section_of_a_rocking_block(finished: Finished, height: float) -> np.ndarray:
     """
     theta, rate = finished.history["rotation_rad"], finished.history["angular_velocity_rad_s"]
     p, g = finished.model.static.frequency_parameter, 9.81
-    turning = -(p**2) * np.sin(SLENDERNESS_ANGLE - theta)
+    turning = -(p**2) * np.sin(SLENDERNESS - theta)
     above = HEIGHT - height
     mass = WEIGHT / g * above / HEIGHT
     inertia = mass * (WIDTH**2 + above**2) / 12.0
@@ -124,7 +123,7 @@ def test_joint_forces_do_not_depend_on_the_change_of_frame_after_the_end():
         motion__shape="rectangular",
         motion__peak_acceleration_m_s2=1.0,
         motion__pulse_s=0.1,
-        initial__rotation_rad=1.4 * SLENDERNESS_ANGLE,
+        initial__rotation_rad=1.4 * SLENDERNESS,
     )
     assert falling.status == "overturned"
     around = np.abs(means(times(falling)) - 0.3) < 0.1

@@ -10,8 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from block_on_floor import Block, Rig, rig
-from container_runs import stack
-from runs import STACK, pulse, run
+from runs import STACK, pulse, run, stack
 from stack_on_floor import Box, stack_rig
 
 from contact.motion.base_motion import PulseMotion

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, rig
 from cases import LEAST
-from container_runs import difference, stack, times
-from runs import run
+from runs import difference, run, stack, times
 
 from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import Case, read_case

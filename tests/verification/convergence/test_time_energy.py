@@ -1,10 +1,17 @@
-"""The energy ledger of what slides, rings and rocks; its order where nothing switches is a row of `verify`."""
+"""The Newmark family with steps that change; the energy ledger of what slides, rings and rocks.
+
+Its order where nothing switches is a row of `verify`.
+"""
 
 import numpy as np
+import pytest
 from block_on_floor import GRAVITY, Block, Rig, rig
+from evidence.findings import Convergence
+from verification.time_stepping import oscillator_error
 
-from contact.motion.base_motion import HarmonicMotion
+from contact.motion.base_motion import HarmonicMotion, PulseMotion
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
+from contact.stepping.scheme import generalised_alpha, newmark
 
 SHAPE = np.array([[[1.0], [0.5]], [[-1.0], [0.5]]]) / 100.0
 
@@ -45,3 +52,30 @@ def test_the_imbalance_of_rocking_falls_with_the_tolerance():
     assert errors[0] <= 1e-2
     assert errors[1] <= 0.5 * errors[0]
     assert errors[2] <= 0.5 * errors[1]
+
+
+SCHEMES = {f"rho {radius:g}": generalised_alpha(radius) for radius in (0.0, 0.3, 0.5, 0.8, 1.0)}
+SCHEMES["average acceleration"] = newmark(0.25, 0.5)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES.values(), ids=SCHEMES)
+def test_steps_that_change_all_the_time_keep_the_second_order(scheme):
+    # The scheme's acceleration lags; were it not shifted when the step changes, the order would fall to one.
+    errors = {}
+    for h in 1e-2 / 2.0 ** np.arange(4):
+        pattern = np.tile([0.9, 0.3, 0.5, 0.7], round(1.0 / (2.4 * h)) + 4)
+        errors[h] = oscillator_error(scheme, h, 1.0, np.cumsum(pattern) * h)
+    orders = Convergence("step [s]", errors, order=2.0, within=0.1)
+    assert orders.passed, orders
+
+
+def test_slip_leaves_out_the_elastic_stick():
+    # A corner moves by its slip and the elongation of its spring, mu_k N/k; a low block: both carry alike.
+    block = Block(height=0.05, mass=2500.0, bounce_frequency=20.0, mu_static=0.4, mu_kinetic=0.2)
+    pull = PulseMotion(shape="rectangular", acceleration=0.6 * GRAVITY, pulse=100.0)
+    run = rig(block, motion=pull).advance(0.5)
+    state = run.run.old
+    stick = float(state.stick.mean())
+    assert abs(stick) == pytest.approx(0.2 * block.mass * GRAVITY / block.base_stiffness, rel=0.01)
+    moved = float((state.point[:, 0] - block.point[:, 0]).mean())
+    assert moved - float(run.joint.slip) == pytest.approx(stick, rel=0.02)
