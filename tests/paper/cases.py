@@ -55,11 +55,7 @@ class PaperCase:
 
     @property
     def case(self) -> Case:
-        """The case as a run reads it, without fields.
-
-        Raises:
-            CaseError: as for a case file.
-        """
+        """The case as a run reads it, without fields."""
         return load_case(self.base).with_values({**self.values, "output.fields_s": 0.0})
 
     @property

@@ -144,11 +144,7 @@ class Experiments:
         self.failed: set[Any] = set()  #: keys of the cases whose runs failed; the caller clears it
 
     def case(self, paper_case: PaperCase) -> Case:
-        """The case as a run reads it; its shipped case is read once.
-
-        Raises:
-            CaseError: as for a case file.
-        """
+        """The case as a run reads it; its shipped case is read once."""
         if paper_case.base not in self._makers:
             self._makers[paper_case.base] = CaseMaker(PaperCase(base=paper_case.base).case)
         return self._makers[paper_case.base](paper_case.values)
@@ -159,11 +155,6 @@ class Experiments:
         Args:
             cases: in the order of the rows.
             also_failed: return the rows of failed runs as well, with outcome None.
-
-        Raises:
-            FailedRunError: a run failed.
-            CaseError: bad input.
-            InterruptedStudyError: interrupted.
         """
         missing = {case.key: self.case(case) for case in cases if case.key not in self._rows}
         if missing:

@@ -129,10 +129,6 @@ def check_claims(
         claims: all by default.
         force: check those again that are decided, and overwrite what the folder holds.
         report: called with a line before each claim is checked.
-
-    Raises:
-        FolderError: the folder holds something else, cannot be made, or has no room.
-        OutputError: the disk is full or read-only, or the folder was removed; what was written can be read.
     """
     began = time.perf_counter()
     way_on = "the same command continues"
@@ -165,11 +161,7 @@ def check_claims(
 def check_paper(
     folder: Path, *, only: Sequence[str], jobs: int | None, force: bool, quiet: bool
 ) -> dict[str, Any]:
-    """Check claims by name, or all, into a folder, and report each with its runs.
-
-    Raises:
-        CaseError: a claim is not one of the paper's.
-    """
+    """Check claims by name, or all, into a folder, and report each with its runs."""
     every = {claim.name: claim for claim in all_claims()}
     for name in only:
         if name not in every:
@@ -193,11 +185,7 @@ def check_paper(
 
 
 def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
-    """The page of a folder of checked claims.
-
-    Raises:
-        FolderError: `study.json` is missing, damaged, or something else.
-    """
+    """The page of a folder of checked claims."""
     path = folder / PAPER.mark
     document = read_result(path, PAPER)
     typed_result(_Document, document, path)

@@ -29,9 +29,6 @@ def first_swing_threshold(
         floor_of_peak: the motion for a given peak acceleration [m/s2].
         low, high: peaks that do not, and do, overturn in the first swing [m/s2].
         duration: long enough to overturn or to come back [s].
-
-    Raises:
-        ValueError: `low` overturns or `high` does not.
     """
 
     def overturns(peak: float) -> bool:

@@ -70,9 +70,6 @@ def simulate_sliding(
         duration: [s].
         slip_velocity: body minus floor at the start [m/s]; a body at rest on a floor that starts with
             velocity v has -v.
-
-    Raises:
-        EventError: more than 100 000 changes between sticking and sliding.
     """
     pieces: list[Piece] = []
     intervals: list[SlipInterval] = []

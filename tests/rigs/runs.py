@@ -118,20 +118,12 @@ class Finished:
 
 
 def run(case: Case, values: Mapping[str, Any] | None = None, container: Container | None = None) -> Finished:
-    """Compute a case with some keys changed.
-
-    Raises:
-        RunFailedError: the run failed, or its energy balance error is too large.
-    """
+    """Compute a case with some keys changed."""
     return finish(build_model(case.with_values(values) if values else case, container))
 
 
 def finish(model: Model) -> Finished:
-    """Step a model to its end.
-
-    Raises:
-        RunFailedError: as for `run`.
-    """
+    """Step a model to its end."""
     recorder = Recorder(model)
     ending = simulate(model, recorder)
     if ending.error is not None:

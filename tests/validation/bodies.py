@@ -46,9 +46,6 @@ def layer_shares(width: float, height: float, *, centroid: float, inertia_ratio:
         width, height: of the block [m].
         centroid: height of the mass centre above the base [m].
         inertia_ratio: moment of inertia about the mass centre over the mass [m2].
-
-    Raises:
-        MeshError: a layer would have a negative mass.
     """
     levels, layer = np.linspace(0.0, height, LAYERS + 1), height / LAYERS
     middle = 0.5 * (levels[1:] + levels[:-1])
@@ -71,9 +68,6 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
         centroid: height of the mass centre above the base [m].
         inertia_ratio: moment of inertia about the mass centre over the mass [m2].
         columns: elements across it.
-
-    Raises:
-        MeshError: a layer would have a negative mass.
     """
     width, height, mass = case.container.width_m, case.container.height_m, case.box_mass
     shares = layer_shares(width, height, centroid=centroid, inertia_ratio=inertia_ratio)

@@ -63,11 +63,7 @@ def read_contents() -> tuple[Content, ...]:
 
 
 def fragility(content: Content, motions: list[GroundMotion]) -> Lognormal:
-    """The curve through the motions that overturn a rigid block, over the velocity of Kaneko and Hayashi.
-
-    Raises:
-        ArithmeticError: no curve fits the counts, or a run failed.
-    """
+    """The curve through the motions that overturn a rigid block, over the velocity of Kaneko and Hayashi."""
     case = rigid_case(
         width=content.width,
         height=content.height,

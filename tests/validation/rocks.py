@@ -52,11 +52,7 @@ DESCRIBED = Experiment(
 
 
 def compute(folder: Path | None) -> Experiment:
-    """Predict each record by a fit on the others, or those set apart by a fit on the rest, for every specimen.
-
-    Raises:
-        ShakeTestError: as for `read_series`.
-    """
+    """Predict each record by a fit on the others, or those set apart by a fit on the rest, for every specimen."""
     if folder is None:
         return replace(
             DESCRIBED, not_computed="the motions are not part of the program: name their folder with --data"
@@ -124,12 +120,7 @@ def falls(series: shake_tests.Series, pair: tuple[Block, int]) -> bool | None:
 
 
 def overturns(body: shake_tests.Body, block: Block, test: shake_tests.ShakeTest) -> bool:
-    """Whether the program's rigid block overturns.
-
-    Raises:
-        CaseError, MeshError: there is no such block.
-        ArithmeticError: the run failed.
-    """
+    """Whether the program's rigid block overturns."""
     case, container = _block(body, block)
     model = build_model(case.with_motion(test.times, test.acceleration), container)
     verdict, error = run_without_history(model, None)

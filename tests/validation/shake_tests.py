@@ -99,11 +99,7 @@ ROCKS_LICENCE = "outcomes as facts; the repository is GPL-3.0, none is stated fo
 
 
 def read_series(folder: Path) -> Series:
-    """The tests of a folder.
-
-    Raises:
-        ShakeTestError: it holds neither the rocks' motions nor a table of outcomes, or they cannot be used.
-    """
+    """The tests of a folder."""
     if (folder / ROCK_MOTIONS).exists():
         return _rocks(folder / ROCK_MOTIONS)
     if (folder / OUTCOMES).exists():

@@ -17,11 +17,7 @@ ALL_S, TABLE_S = 60.0, 240.0  #: without and with tests on a shake table
 
 
 def require(data: Path | None) -> None:
-    """Refuse a folder without shake-table tests.
-
-    Raises:
-        ShakeTestError: the folder is of another kind.
-    """
+    """Refuse a folder without shake-table tests."""
     if data is not None:
         read_series(data)
 
@@ -32,9 +28,6 @@ def run_validation(data: Path | None, *, reporter: ScreenReporter) -> list[Exper
     Args:
         data: folder of shake-table tests; None leaves that experiment out.
         reporter: told the name of each.
-
-    Raises:
-        ShakeTestError: as for `require`.
     """
     require(data)
     expected = ALL_S + (TABLE_S if data is not None else 0.0)

@@ -52,11 +52,7 @@ class Flight:
         return float(self.run.clock[0].time)
 
     def advance(self, until: float, *, trace: bool = False) -> "Flight":
-        """Step to `until` [s]; with `trace`, record the floor's force after every step.
-
-        Raises:
-            SteppingError: an iteration did not converge.
-        """
+        """Step to `until` [s]; with `trace`, record the floor's force after every step."""
         while self.time < until * (1.0 - 1e-12):
             stop = self.time + 0.5 * self.step if trace else until * (1.0 - 1e-12)
             if advance_body(self.body, self.run, stop) != REACHED:

@@ -252,11 +252,7 @@ def free_square_frequencies() -> FloatArray:
 
 
 def elastica_tip(load_ratios: Sequence[float], slenderness: float) -> FloatArray:
-    """Tip of a cantilever of unit length under a dead end load: (down, shortening) at each P L^2/(E I).
-
-    Raises:
-        NewtonError: no equilibrium.
-    """
+    """Tip of a cantilever of unit length under a dead end load: (down, shortening) at each P L^2/(E I)."""
     height = 1.0 / slenderness
     mesh = mapped_mesh(80, 2, lambda s, t: (s, height * (t - 0.5)))
     elements = assemble(mesh, youngs_modulus=1.0, poisson_ratio=0.0, order=2)
@@ -295,11 +291,7 @@ def linear_solution(elements: FiniteElements, load: FloatArray, free: IntArray) 
 
 
 def node_at(elements: FiniteElements, x: float, z: float) -> int:
-    """The node at a place.
-
-    Raises:
-        ValueError: there is none.
-    """
+    """The node at a place."""
     distance = np.hypot(*(elements.nodes - (x, z)).T)
     if not distance.min() < 1e-9:
         raise ValueError(f"no node at x = {x}, z = {z}; the nearest is {distance.min():.3g} away")
