@@ -1,17 +1,16 @@
 """The paper's central claim, counted: static rule, the paper's own criteria and the run, cell by cell."""
 
 from collections import Counter
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from evidence.findings import Finding, at_least, at_most
+from evidence.findings import at_least, at_most
 from paper import criteria, maps
 from paper.cases import BOX, SHELL, STACK, PaperCase, friction
-from paper.claims import ClaimFigure, ClaimTable, Evidence, claim, outcomes, table
+from paper.claims import ClaimFigure, Evidence, claim, outcomes, table
 from paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, PAPER_MU, UPLIFT
 from paper.experiments import Experiments
-from paper.figures import curve, draw_curves, draw_map
+from paper.figures import Curve, draw_curves, draw_map
 
 from fem.figures.heat_map import MapCurve
 from fem.results.outcome import Outcome
@@ -65,27 +64,7 @@ def static_rule_is_conservative(experiments: Experiments) -> Evidence:
         f"{100.0 * slow:.0f} % up to 3 p and in {100.0 * fast:.0f} % above 3 p. See the figure. These are counts of "
         "overturning."
     )
-    yield from _below_the_limits(experiments)
-    yield from _witnesses(stack, criteria.static_rule)
-    yield draw_curves(
-        "static-rule-over-frequency",
-        "Share of the motions that the static rule turns over and the rigid stack stands (peaks from "
-        "g a/c to 12 m/s²).",
-        "angular frequency [rad/s] | share that stands [-]",
-        [
-            curve(
-                maps.FREQUENCIES,
-                [stack.standing_share(criteria.static_rule, [frequency]) for frequency in maps.FREQUENCIES],
-                style="o-",
-            )
-        ],
-        y_limits=(0.0, 1.05),
-    )
-    yield _shape_figure(maps.shape_maps(experiments)[-1])
-
-
-def _below_the_limits(experiments: Experiments) -> Evidence:
-    """Runs that the static rule holds for sliding and tilting, and that may move all the same."""
+    # runs that the static rule holds for sliding and tilting, and that may move all the same
     jump = BOX.but(
         SHELL,
         {"motion.kind": "pulse", "motion.shape": "rectangular", "motion.pulse_s": 0.5, "motion.delay_s": 0.1},
@@ -102,10 +81,9 @@ def _below_the_limits(experiments: Experiments) -> Evidence:
         duration=15.0,
         what="shell stack on a flat base, 0.95 of g a/c, mu_k = mu_s",
     )
-    weakening = {"contact.weakening_m": 2e-4}
     cases = [
         jump,
-        jump.but(weakening, what=f"{jump.what}; mu falls over 0.2 mm of slip"),
+        jump.but({"contact.weakening_m": 2e-4}, what=f"{jump.what}; mu falls over 0.2 mm of slip"),
         flat,
         experiments.on_floor(flat, 100.0).but(what=f"{flat.what}; a floor 100 times as stiff"),
     ]
@@ -113,20 +91,33 @@ def _below_the_limits(experiments: Experiments) -> Evidence:
     slips, ratios = ([row[key] for row in rows] for key in ("max_slip_m", "rotation_ratio"))
     slide = at_most(f"slip, {jump.what}", 1e3 * slips[0], 0.1, "mm", inside=False)
     rock = at_most(f"rotation ratio, {flat.what}", ratios[2], 0.01, inside=False)
+    bounds = ["a bound" if finding.holds else "no bound" for finding in (slide, rock)]
     yield slide
     yield rock
     yield (
-        f"For sliding it is {_bound(slide)} in this program: where the floor jumps to 0.80 of stiction the shell box "
+        f"For sliding it is {bounds[0]} in this program: where the floor jumps to 0.80 of stiction the shell box "
         f"slides by {1e3 * slips[0]:.3g} mm ({1e3 * slips[1]:.2g} mm if mu falls over 0.2 mm of slip). For the start "
-        f"of rocking it is {_bound(rock)}: at 0.95 of g a/c the shell stack on a flat base rotates to {ratios[2]:.2g} "
+        f"of rocking it is {bounds[1]}: at 0.95 of g a/c the shell stack on a flat base rotates to {ratios[2]:.2g} "
         f"of the slenderness angle ({ratios[3]:.2g} on a floor 100 times as stiff)."
     )
     yield from cases
     yield outcomes("Below the static limits", experiments, cases)
-
-
-def _bound(finding: Finding) -> str:
-    return "a bound" if finding.holds else "no bound"
+    yield from _witnesses(stack, criteria.static_rule)
+    yield draw_curves(
+        "static-rule-over-frequency",
+        "Share of the motions that the static rule turns over and the rigid stack stands (peaks from "
+        "g a/c to 12 m/s²).",
+        "angular frequency [rad/s] | share that stands [-]",
+        [
+            Curve(
+                maps.FREQUENCIES,
+                [stack.standing_share(criteria.static_rule, [frequency]) for frequency in maps.FREQUENCIES],
+                style="o-",
+            )
+        ],
+        y_limits=(0.0, 1.05),
+    )
+    yield _shape_figure(maps.shape_maps(experiments)[-1])
 
 
 @claim(
@@ -148,8 +139,9 @@ def paper_criteria(experiments: Experiments) -> Evidence:
     stack = every_map[0]
     modes = Counter((criteria.predicted_mode(cell.motion), str(cell.row["outcome"])) for cell in stack.cells)
     tilting, paper, static = (
-        _in_words(stack.count(rule))
-        for rule in (criteria.tilting_rule, criteria.paper_rule, criteria.static_rule)
+        f"right in {counts.right} of {counts.cells} cells, conservative in {counts.conservative} and unconservative in "
+        f"{counts.unconservative}"
+        for counts in map(stack.count, (criteria.tilting_rule, criteria.paper_rule, criteria.static_rule))
     )
     right = sum(count for (predicted, observed), count in modes.items() if predicted == observed)
     yield (
@@ -158,8 +150,26 @@ def paper_criteria(experiments: Experiments) -> Evidence:
         "is a bound on the safe side only where it is never unconservative."
     )
     yield from _witnesses(stack, criteria.paper_rule)
-    yield _criteria_table(every_map)
-    yield _mode_table(modes)
+    yield table(
+        "Criteria against runs, cell by cell",
+        "map | criterion | cells | right | conservative | unconservative | .. of sure cells",
+        [
+            (
+                outcome_map.title,
+                *(name, every.cells, every.right, every.conservative, every.unconservative),
+                outcome_map.count(criterion, sure=True).unconservative,
+            )
+            for outcome_map in every_map
+            for name, criterion in criteria.CRITERIA.items()
+            for every in [outcome_map.count(criterion)]
+        ],
+    )
+    names, said = tuple(Outcome), {mode for mode, _ in modes}
+    yield table(
+        "Mode by Eqs. 8 to 13 and A (rows) and by the run (columns), rigid stack, mu 0.4/0.2",
+        f"said | {' | '.join(names)}",
+        [(mode, *(modes[mode, observed] for observed in names)) for mode in names if mode in said],
+    )
     smooth = np.linspace(min(maps.FREQUENCIES), max(maps.FREQUENCIES), 100)
     yield draw_map(
         "criteria-map",
@@ -234,47 +244,6 @@ def region_of_safety(experiments: Experiments) -> Evidence:
 def _re_entries(outcome_map: maps.OutcomeMap) -> int:
     """How often the rows of a map go from falling back to standing."""
     return sum(before.fell and after.stood for row in outcome_map.rows for before, after in pairwise(row))
-
-
-def _in_words(counts: criteria.Contingency) -> str:
-    return (
-        f"right in {counts.right} of {counts.cells} cells, conservative in {counts.conservative} and unconservative in "
-        f"{counts.unconservative}"
-    )
-
-
-def _criteria_table(every_map: Sequence[maps.OutcomeMap]) -> ClaimTable:
-    counts = [
-        (outcome_map.title, name, outcome_map.count(criterion), outcome_map.count(criterion, sure=True))
-        for outcome_map in every_map
-        for name, criterion in criteria.CRITERIA.items()
-    ]
-    return table(
-        "Criteria against runs, cell by cell",
-        "map | criterion | cells | right | conservative | unconservative | .. of sure cells",
-        [
-            (
-                title,
-                name,
-                every.cells,
-                every.right,
-                every.conservative,
-                every.unconservative,
-                sure.unconservative,
-            )
-            for title, name, every, sure in counts
-        ],
-    )
-
-
-def _mode_table(modes: Counter[tuple[Outcome, str]]) -> ClaimTable:
-    names = tuple(Outcome)
-    predicted = {mode for mode, _ in modes}
-    return table(
-        "Mode by Eqs. 8 to 13 and A (rows) and by the run (columns), rigid stack, mu 0.4/0.2",
-        f"said | {' | '.join(names)}",
-        [(mode, *(modes[mode, observed] for observed in names)) for mode in names if mode in predicted],
-    )
 
 
 def _witnesses(outcome_map: maps.OutcomeMap, criterion: criteria.Criterion) -> list[PaperCase]:

@@ -1,7 +1,7 @@
 """Figures of the claims: curves, and outcome maps."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -18,28 +18,20 @@ COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")
 HEIGHT = 3.3  #: [inch]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PlottedLine:
-    """A curve, or points where the style says so."""
+class Curve(NamedTuple):
+    """A line, or points where the style of matplotlib says so."""
 
     x: Sequence[float] | FloatArray
     y: Sequence[float] | FloatArray
-    label: str
-    style: str
-
-
-def curve(
-    x: Sequence[float] | FloatArray, y: Sequence[float] | FloatArray, label: str = "", style: str = "-"
-) -> PlottedLine:
-    """A line; the style is that of matplotlib."""
-    return PlottedLine(x=x, y=y, label=label, style=style)
+    label: str = ""
+    style: str = "-"
 
 
 def draw_curves(
     name: str,
     caption: str,
     labels: str,
-    lines: Sequence[PlottedLine],
+    lines: Sequence[Curve],
     *,
     levels: Mapping[str, float] | None = None,
     log_x: bool = False,

@@ -11,7 +11,7 @@ from paper.cases import FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK
 from paper.claims import Evidence, claim, table
 from paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, HALF_WIDTH, HOLDING, PAPER_MU, UPLIFT
 from paper.experiments import Experiments, capped_ratio, stands
-from paper.figures import curve, draw_curves, draw_map
+from paper.figures import Curve, draw_curves, draw_map
 from paper.maps import FAST, FREQUENCIES, MapCell, stack_map
 
 from fem.figures.heat_map import MapCurve
@@ -97,7 +97,7 @@ def short_before_reversal(experiments: Experiments) -> Evidence:
         "When the stack begins to tilt, in periods before the floor reverses, and its outcome.",
         "angular frequency [rad/s] | lead over the period [-]",
         [
-            curve([cell.motion.angular_frequency for cell in cells], list(map(_lead, cells)), label, style)
+            Curve([cell.motion.angular_frequency for cell in cells], list(map(_lead, cells)), label, style)
             for cells, label, style in ((standing, "stands", "."), (fallen, "overturns", "x"))
         ],
     )
@@ -232,7 +232,10 @@ def beyond_half_width(experiments: Experiments) -> Evidence:
     ]
     standing = [cell for cell in beyond if cell.stood]
     sure = [cell for cell in standing if cell.sure]
-    below = [cell for cell in sure if cell.motion.peak / UPLIFT < _first_swing(cell)]
+    below = []  # the peak from which a sine overturns a slender block in its first swing
+    for cell in sure:
+        limit = sustained_sine_threshold_slender(cell.motion.angular_frequency / FREQUENCY_PARAMETER)
+        below += [cell] if cell.motion.peak / UPLIFT < limit else []
     yield at_most("sure cells with A > a/2 and M_T > M_R that stand", len(sure), 0.0)
     yield (
         f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "
@@ -248,8 +251,3 @@ def beyond_half_width(experiments: Experiments) -> Evidence:
         lambda row: not stands(row),
         value=capped_ratio,
     )
-
-
-def _first_swing(cell: MapCell) -> float:
-    """Peak over g a/c from which a sine overturns a slender block in its first swing [-]."""
-    return sustained_sine_threshold_slender(cell.motion.angular_frequency / FREQUENCY_PARAMETER)

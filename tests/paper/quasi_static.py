@@ -10,7 +10,7 @@ from paper.cases import BOX, FOR_MAPS, NO_SLIDING, RIGID, SHELL, STACK, PaperCas
 from paper.claims import Evidence, claim
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, UPLIFT, WIDTH
 from paper.experiments import Experiments
-from paper.figures import curve, draw_curves
+from paper.figures import Curve, draw_curves
 
 from fem.results.outcome import SLIDING, Outcome
 
@@ -78,8 +78,8 @@ def kinetic_limit(experiments: Experiments) -> Evidence:
         "Shear force over weight of the box, and the force that sticking would require.",
         "time [s] | force / weight [-]",
         [
-            curve(time[early], shear[early], "shear force / weight"),
-            curve(time[early], -acceleration[early] / GRAVITY, "required for sticking", "--"),
+            Curve(time[early], shear[early], "shear force / weight"),
+            Curve(time[early], -acceleration[early] / GRAVITY, "required for sticking", "--"),
         ],
         levels={"mu_s": 0.4, "mu_k": 0.2},
     )

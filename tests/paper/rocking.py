@@ -9,7 +9,7 @@ from paper.cases import BOX, FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK,
 from paper.claims import Evidence, claim
 from paper.dimensions import GRAVITY, HEIGHT, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments, VariantBand, stands, variant_result
-from paper.figures import curve, draw_curves
+from paper.figures import Curve, draw_curves
 from runs import Finished
 
 from contact.reference.rigid_block import RigidBlock
@@ -102,10 +102,10 @@ def eq_3(experiments: Experiments) -> Evidence:
         far_2 += [abs(math.log(two / run)) for two, run in zip(second, periods.values(), strict=True)]
         far_3 += [abs(math.log(third / run)) for run in periods.values()]
         lines += [
-            curve(RELEASES, list(periods.values()), f"{name}, run", "o"),
-            curve(RELEASES, exact, f"{name}, exact block"),
-            curve(RELEASES, second, f"{name}, Eq. 2", ":"),
-            curve(RELEASES, [third] * len(RELEASES), f"{name}, Eq. 3", "--"),
+            Curve(RELEASES, list(periods.values()), f"{name}, run", "o"),
+            Curve(RELEASES, exact, f"{name}, exact block"),
+            Curve(RELEASES, second, f"{name}, Eq. 2", ":"),
+            Curve(RELEASES, [third] * len(RELEASES), f"{name}, Eq. 3", "--"),
         ]
     typical_2, typical_3 = (math.exp(float(np.median(far))) - 1.0 for far in (far_2, far_3))
     length = math.hypot(WIDTH, HEIGHT)
@@ -179,7 +179,14 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
     for name, base in BODIES.items():
         block = experiments.block(base)
         kick = _analytic_kick(block)
-        kicked.append(_largest_kick(experiments, base.but(RIGID, FREE, duration=5.0, interval=0.02), kick))
+        # a scan by a quarter of a per cent around the kick: where standing ends, nan if it ends twice
+        factors = [1.0 + 0.0025 * n for n in range(-4, 5)]
+        case = base.but(RIGID, FREE, duration=5.0, interval=0.02)
+        scan = case.scan("velocity", [factor * kick for factor in factors], "kicked by {:g} rad/s")
+        rows = zip(factors, experiments.rows(scan), strict=True)
+        changes = changes_of({factor: "stands" if stands(row) else "falls" for factor, row in rows})
+        once = [change.above for change in changes] == ["falls"]
+        kicked.append(changes[0].value if once else math.nan)
         what = f"{name}, rigid: largest kick that returns over p sqrt(2 (1 - cos beta)) = {kick:.4f} rad/s"
         yield equal(what, kicked[-1], 1.0, 0.005)
         sides = [share * block.slenderness_angle for share in (0.98, 1.02)]
@@ -200,7 +207,7 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
         history = experiments.run(case).history
         early = history["time_s"] <= 6.0
         rotation, velocity = history["rotation_rad"][early], history["angular_velocity_rad_s"][early]
-        lines.append(curve(rotation, velocity, case.what))
+        lines.append(Curve(rotation, velocity, case.what))
     yield (
         "The orbit through rest at the slenderness angle separates the motions that return from those that overturn: "
         f"of {len(parted)} releases on either side {sum(parted)} ended so. The largest kick that returns "
@@ -227,15 +234,6 @@ def _analytic_kick(block: RigidBlock) -> float:
     return 2.0 * block.frequency_parameter * math.sin(0.5 * block.slenderness_angle)
 
 
-def _largest_kick(experiments: Experiments, case: PaperCase, kick: float) -> float:
-    """Scan by a quarter of a per cent around a kick: where standing ends, over the kick; nan if it ends twice."""
-    factors = [1.0 + 0.0025 * n for n in range(-4, 5)]
-    scan = case.scan("velocity", [factor * kick for factor in factors], "kicked by {:g} rad/s")
-    rows = zip(factors, experiments.rows(scan), strict=True)
-    changes = changes_of({factor: "stands" if stands(row) else "falls" for factor, row in rows})
-    return changes[0].value if [change.above for change in changes] == ["falls"] else math.nan
-
-
 @claim(
     "4.2",
     "With a prescribed base displacement and eta > 1, even for a steady state drive the DAF for "
@@ -255,7 +253,7 @@ def mass_centre(experiments: Experiments) -> Evidence:
         yield from [case for case, ratio in zip(group, RATIOS, strict=True) if ratio in (1.2, 2.0)]
         overturned += [run.status == "overturned" for run in runs]
         factors = np.array([_factor(run) for run in runs])
-        curves.append(curve(RATIOS, factors, f"{peak:g} m/s²", "o-"))
+        curves.append(Curve(RATIOS, factors, f"{peak:g} m/s²", "o-"))
         for which, chosen, inside in (("above sqrt 2", ~near, True), ("from 1 to sqrt 2", near, False)):
             known = factors[chosen & np.isfinite(factors)]
             what = f"{peak:g} m/s²: largest DAF, eta {which}, cases that stand"
@@ -274,7 +272,7 @@ def mass_centre(experiments: Experiments) -> Evidence:
         "mass-centre",
         "Displacement amplitude of the mass centre over that of the floor, last three cycles; gaps: overturned.",
         "eta = Omega / omega (Eq. 3) [-] | DAF [-]",
-        [*curves, curve(eta, 1.0 / (eta**2 - 1.0), "linear oscillator", ":")],
+        [*curves, Curve(eta, 1.0 / (eta**2 - 1.0), "linear oscillator", ":")],
         y_limits=(0.0, 2.0),
     )
     yield _band(

@@ -10,7 +10,7 @@ from paper.cases import PLATEAU, RIGID, SHELL, STACK, PaperCase
 from paper.claims import Evidence, claim, outcomes, table
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, HEIGHT, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments
-from paper.figures import curve, draw_curves
+from paper.figures import Curve, draw_curves
 
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
@@ -46,15 +46,25 @@ def cylinder(experiments: Experiments) -> Evidence:
         "cylinder": inertia_ratio(cylinder=True),
         "cylinder, all mass in its wall": inertia_ratio(cylinder=True, hollow=True),
     }
-    rows = []
+    rows, plateau = [], PLATEAU_PEAK / ANGULAR_FREQUENCY**2
     for name, ratio in ratios.items():
         body = RigidBlock(
             half_width=HALF_WIDTH, centroid_height=0.5 * HEIGHT, gravity=GRAVITY, inertia_ratio=ratio
         )
-        p, e = body.frequency_parameter, body.housner_restitution
-        rows.append(
-            (name, ratio, p, e, body.uplift_acceleration, _largest_at_plateau(body), _first_swing(body))
+        floor = sine_floor(amplitude=plateau, angular_frequency=ANGULAR_FREQUENCY)
+        largest = simulate_rocking(body, floor, duration=3.0).largest_rotation / body.slenderness_angle
+        first_swing = first_swing_threshold(
+            body,
+            lambda peak: sine_floor(
+                amplitude=peak / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY
+            ),
+            low=3.0,
+            high=60.0,
+            duration=4.0,
+            relative_tolerance=1e-3,
         )
+        p, e = body.frequency_parameter, body.housner_restitution
+        rows.append((name, ratio, p, e, body.uplift_acceleration, largest, first_swing))
     names = (
         "frequency parameter p",
         "Housner's restitution",
@@ -82,22 +92,6 @@ def cylinder(experiments: Experiments) -> Evidence:
         "in 3 s at the plateau value [-] | first-swing peak at 6.928 rad/s [m/s²]",
         rows,
     )
-
-
-def _first_swing(body: RigidBlock) -> float:
-    return first_swing_threshold(
-        body,
-        lambda peak: sine_floor(amplitude=peak / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY),
-        low=3.0,
-        high=60.0,
-        duration=4.0,
-        relative_tolerance=1e-3,
-    )
-
-
-def _largest_at_plateau(body: RigidBlock) -> float:
-    floor = sine_floor(amplitude=PLATEAU_PEAK / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY)
-    return simulate_rocking(body, floor, duration=3.0).largest_rotation / body.slenderness_angle
 
 
 @claim(
@@ -181,7 +175,7 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
         "rigid-assumption",
         "Rotation at the plateau value, mu 0.4/0.2: rigid block and shell of 8 mm.",
         "time [s] | rotation [rad]",
-        [curve(history["time_s"], history["rotation_rad"], name) for name, history in histories.items()],
+        [Curve(history["time_s"], history["rotation_rad"], name) for name, history in histories.items()],
     )
     yield experiments.band(
         base,

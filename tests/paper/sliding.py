@@ -10,7 +10,7 @@ from paper.cases import BOX, FOR_MAPS, PLATEAU, RIGID, STACK, friction
 from paper.claims import Evidence, claim, table
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HEIGHT, HOLDING, PAPER_MU, WIDTH
 from paper.experiments import Experiments, capped_ratio, stands
-from paper.figures import curve, draw_curves
+from paper.figures import Curve, draw_curves
 from paper.maps import MapCell, pairs, stack_map
 from rigid_slider import RigidSlider, simulate_sliding
 
@@ -102,7 +102,7 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
         saved = [held for held, slipped in slid if held.fell and not slipped.fell]
         lost = [pair for pair in slid if pair[1].fell and not pair[0].fell]
         sure = [pair for pair in lost if pair[0].sure and pair[1].sure]
-        more = [pair for pair in slid if _turns_more(*pair)]
+        more = [(held, slipped) for held, slipped in slid if _turns_more(held, slipped)]
         inside = mu[0] < WIDTH_OVER_HEIGHT
         if inside:
             low_cells += slipping.cells
@@ -187,7 +187,7 @@ def same_amplitude(experiments: Experiments) -> Evidence:
         "Largest rotation over the slenderness angle (1: overturned) over the floor's amplitude "
         "at 6.928 rad/s; rigid stack.",
         "amplitude A [mm] | rotation ratio [-]",
-        [curve(1e3 * amplitudes, values, f"mu {_in_words(mu)}", "o-") for mu, values in curves.items()],
+        [Curve(1e3 * amplitudes, values, f"mu {_in_words(mu)}", "o-") for mu, values in curves.items()],
     )
     yield experiments.band(
         STACK.but(amplitude=0.1, duration=8.0),
@@ -232,7 +232,7 @@ def halt_at_extremes(experiments: Experiments) -> Evidence:
         "halt-at-extremes",
         "Phase between the end of a slip and the extreme point of the floor; exact slider, mu 0.4/0.2.",
         "peak floor acceleration [m/s²] | phase beside the extreme [°]",
-        [curve(peaks, lags, style="o-")],
+        [Curve(peaks, lags, style="o-")],
         log_x=True,
     )
 

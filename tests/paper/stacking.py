@@ -95,7 +95,19 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
             what = f"largest difference of stacks that {which} when bolted, {share:g} of the floor's friction"
             apart = max((pair.apart for pair in group), default=math.nan)
             yield at_most(what, apart, AS_ONE, inside=not rocks and share >= 1.0)
-    yield _reading(pairs)
+    as_one = [pair for pair in pairs if pair.apart <= AS_ONE]
+    rocking = [pair for pair in pairs if pair.rocks]
+    flat = [pair for pair in pairs if not pair.rocks and pair.share >= 1.0]
+    most = max(pairs, key=lambda pair: pair.loose["max_joint_slip_m"])
+    yield (
+        f"{len(as_one)} of {len(pairs)} loose stacks move as one. Of those that do not rock when bolted, "
+        f"{_count(flat)} do so where the friction between the boxes is at least that on the floor; with less, boxes "
+        "slide on one another first. A rocking stack needs more, since an impact shears its joints beyond that: with "
+        f"the friction of the floor {_count([pair for pair in rocking if pair.share == 1.0])} move as one, with one "
+        f"and a half times that {_count([pair for pair in rocking if pair.share == 1.5])}; in the others joints open. "
+        f"The largest slip between boxes is {1e3 * most.loose['max_joint_slip_m']:.0f} mm ({most.boxes} boxes, "
+        f"{most.share:g} of the friction, {most.peak:g} m/s²)."
+    )
     yield from (loose[4, share, PLATEAU_PEAK] for share in SHARES)
     yield table(
         "Bolted and loose stacks, friction between the boxes over that on the floor",
@@ -111,22 +123,6 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
             )
             for pair in pairs
         ],
-    )
-
-
-def _reading(pairs: Sequence[BoltedAndLoose]) -> str:
-    as_one = [pair for pair in pairs if pair.apart <= AS_ONE]
-    rocking = [pair for pair in pairs if pair.rocks]
-    flat = [pair for pair in pairs if not pair.rocks and pair.share >= 1.0]
-    most = max(pairs, key=lambda pair: pair.loose["max_joint_slip_m"])
-    return (
-        f"{len(as_one)} of {len(pairs)} loose stacks move as one. Of those that do not rock when bolted, "
-        f"{_count(flat)} do so where the friction between the boxes is at least that on the floor; with less, boxes "
-        "slide on one another first. A rocking stack needs more, since an impact shears its joints beyond that: with "
-        f"the friction of the floor {_count([pair for pair in rocking if pair.share == 1.0])} move as one, with one "
-        f"and a half times that {_count([pair for pair in rocking if pair.share == 1.5])}; in the others joints open. "
-        f"The largest slip between boxes is {1e3 * most.loose['max_joint_slip_m']:.0f} mm ({most.boxes} boxes, "
-        f"{most.share:g} of the friction, {most.peak:g} m/s²)."
     )
 
 
@@ -159,16 +155,8 @@ def slip_between_loose_boxes(experiments: Experiments) -> Evidence:
             yield equal(
                 f"slip over that of one box, {what}", ratio, 1.0, 0.05, inside=row["rotation_ratio"] < AS_ONE
             )
-            lines.append(
-                (
-                    boxes,
-                    peak,
-                    1e3 * row["max_joint_slip_m"],
-                    1e3 * slider,
-                    row["rotation_ratio"],
-                    row["outcome"],
-                )
-            )
+            slips = 1e3 * row["max_joint_slip_m"], 1e3 * slider
+            lines.append((boxes, peak, *slips, row["rotation_ratio"], row["outcome"]))
             yield case
     yield (
         f"The largest slip between boxes is {lines[0][2]:.0f} mm of two boxes and {lines[2][2]:.0f} mm of four at "

@@ -114,22 +114,12 @@ def centroids_and_columns() -> Findings:
 def tolerances_and_steps() -> Findings:
     """Restitution depends on neither the tolerance of the energy balance nor the largest step."""
     for kind in ("corners", "flat"):
-        ratios = [
-            peaks(
-                released(
-                    block(
-                        STACKED,
-                        {
-                            "support.kind": kind,
-                            "solver.element_size_m": 0.1,
-                            "solver.energy_tolerance": tolerance,
-                            "solver.step_s": step,
-                        },
-                    )
-                )
-            )
+        keys = {"support.kind": kind, "solver.element_size_m": 0.1}
+        settings = (
+            {"solver.energy_tolerance": tolerance, "solver.step_s": step}
             for tolerance, step in itertools.product((0.01, 1.0, 10.0), (1e-4, 1e-2))
-        ]
+        )
+        ratios = [peaks(released(block(STACKED, keys | setting))) for setting in settings]
         yield analytic(
             f"rigid stack on {kind}, tolerance 0.01 to 10, steps of 0.1 to 10 ms",
             f"{COMPARED}, largest minus least",
@@ -201,7 +191,17 @@ def bed_of_springs() -> Findings:
     for kind, values, sizes in beds:
         keys = {"support.kind": kind, "output.history_s": 1e-3} | values
         runs = {size: released(block(STACKED, keys | {"solver.element_size_m": size})) for size in sizes}
-        exact = velocity_ratio(runs[0.05].block, turning_point_on_springs(runs[0.05], kind))
+        done = runs[0.05]
+        contact, width = done.model.run.problem.contact, 2.0 * done.block.half_width
+        turned = next_turning_point(
+            done.block,
+            places=np.array([-0.5, 0.5]) * width if kind == "corners" else evenly_spaced(width, 111),
+            stiffness=float(contact.normal_stiffness.sum()) / done.model.container.mesh.mass,
+            relaxation_time=float(contact.relaxation_time[0]),
+            rotation=0.5 * done.block.slenderness_angle,
+            duration=done.model.duration,
+        )
+        exact = velocity_ratio(done.block, turned)
         changed = "".join(f", {key.split('.')[1]} = {value:g}" for key, value in values.items())
         for size, done in runs.items():
             yield computed(
@@ -212,19 +212,6 @@ def bed_of_springs() -> Findings:
                 source="rigid block on springs, 2 for corners and 111 for a flat base",
                 absolute=2e-3,
             )
-
-
-def turning_point_on_springs(done: Finished, kind: str) -> float:
-    """|rotation| at the turning point after the first impact, by the reference on the same floor [rad]."""
-    contact, width = done.model.run.problem.contact, 2.0 * done.block.half_width
-    return next_turning_point(
-        done.block,
-        places=np.array([-0.5, 0.5]) * width if kind == "corners" else evenly_spaced(width, 111),
-        stiffness=float(contact.normal_stiffness.sum()) / done.model.container.mesh.mass,
-        relaxation_time=float(contact.relaxation_time[0]),
-        rotation=0.5 * done.block.slenderness_angle,
-        duration=done.model.duration,
-    )
 
 
 def velocity_ratio(block: RigidBlock, rotation: float) -> float:

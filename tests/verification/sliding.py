@@ -199,7 +199,12 @@ def sliding_without_stops() -> Findings:
     """Friction ratio up to which the slider never stops: the motion on either side of it."""
     for static_ratio, reference in ((1.0, 0.53703), (2.0, 0.39322)):
         limit = never_stops_ratio(static_ratio)
-        below, above = (near_the_limit(factor * limit, static_ratio) for factor in (0.95, 1.05))
+        settings = {"solver.duration_s": 40.0 * PERIOD, "output.history_s": PERIOD / 1000}
+        settings |= runs.harmonic(AMPLITUDE, OMEGA)
+        below, above = (
+            runs.run(runs.BOX, settings | friction_of(factor * limit, static_ratio))
+            for factor in (0.95, 1.05)
+        )
         stops = [longest_stop(done, 36.0 * PERIOD) > SHORTEST_STOP * PERIOD for done in (below, above)]
         case = f"rigid box, mu_s = {static_ratio:g} mu_k"
         yield analytic(
@@ -355,12 +360,6 @@ def friction_of(kappa: float, static_ratio: float = 1.0) -> runs.Keys:
     """Coefficients with mu_k g = kappa A Omega^2 and mu_s = static_ratio mu_k."""
     kinetic = kappa * AMPLITUDE * OMEGA**2 / runs.GRAVITY
     return {"contact.mu_static": static_ratio * kinetic, "contact.mu_kinetic": kinetic}
-
-
-def near_the_limit(kappa: float, static_ratio: float) -> runs.Finished:
-    """Forty cycles of the box at a friction ratio."""
-    settings = {"solver.duration_s": 40.0 * PERIOD, "output.history_s": PERIOD / 1000}
-    return runs.run(runs.BOX, runs.harmonic(AMPLITUDE, OMEGA) | friction_of(kappa, static_ratio) | settings)
 
 
 def slip_of_the_papers_slider(times: FloatArray, start_velocity: float = 0.0) -> FloatArray:
