@@ -18,6 +18,7 @@ from fem.records.source import MOST_SAMPLES
 from mesh.files import FORMATS
 
 Draw = Any
+RUN = ("run", "case.toml", "--out", "out", "-q", "--no-band")
 #: a rigid block on a motion that is put in, for a moment
 CASE = (
     "[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2000.0\n[contact]\nmu_static = 0.4\n"
@@ -61,27 +62,22 @@ def motion_tables(draw: Draw) -> Input:
         content = draw(damaged(content))
     lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in words.items())
     case = CASE.format(motion=f'kind = "table"\nfile = "floor.csv"\n{lines}')
-    return Input(
-        arguments=("run", "case.toml", "--out", "out", "-q", "--no-band"),
-        files={"case.toml": case.encode(), "floor.csv": content},
-    )
+    return Input(arguments=RUN, files={"case.toml": case.encode(), "floor.csv": content})
 
 
-def record_of(name: str) -> bytes:
+def record_of(name: str) -> str:
     """A file of a format, short enough to be damaged in its header as often as in its numbers."""
-    values = tuple(component[:200] for component in synthetic_motion())
-    return WRITTEN[name].text(*values).encode()
+    return WRITTEN[name].text(*(component[:200] for component in synthetic_motion()))
 
 
 @st.composite
 def records(draw: Draw) -> Input:
     """A file of any format with bytes changed, as the motion of a case or drawn, in any way of naming it."""
     name = draw(st.sampled_from(sorted(WRITTEN)))
-    form, content = WRITTEN[name], draw(damaged(record_of(name)))
+    form, content = WRITTEN[name], draw(damaged(record_of(name).encode()))
     if draw(st.integers(0, 5)) == 0:
-        content = content.decode("utf-8", "replace").encode(
-            draw(st.sampled_from(("utf-16", "utf-8-sig", "cp500"))), "replace"
-        )
+        coding = draw(st.sampled_from(("utf-16", "utf-8-sig", "cp500")))
+        content = content.decode("utf-8", "replace").encode(coding, "replace")
     said = {"unit": form.unit, "sample_interval": form.sample_interval}
     if draw(st.integers(0, 3)) == 0:
         said["unit"] = draw(st.sampled_from(("g", "gal", "m/s2", "m")))
@@ -90,40 +86,26 @@ def records(draw: Draw) -> Input:
         options = [f"--{key.replace('_', '-')}={value}" for key, value in said.items() if value is not None]
         return Input(arguments=("picture", f"motion{channel}", *options), files={"motion": content})
     keys = {"unit": said["unit"], "sample_interval_s": said["sample_interval"]}
-    for key in draw(
-        st.sets(st.sampled_from(("start_s", "end_s", "scale_to_m_s2", "baseline", "quantity")), max_size=3)
-    ):
+    others = st.sampled_from(("start_s", "end_s", "scale_to_m_s2", "baseline", "quantity"))
+    for key in draw(st.sets(others, max_size=3)):
         keys[key] = draw(values_of(f"motion.{key}", None))
     keys |= {"vertical.kind": "table"} if draw(st.booleans()) else {}
-    changes = [
-        f"{key if '.' in key else f'motion.{key}'}={value}"
-        for key, value in keys.items()
-        if value is not None
-    ]
-    case = CASE.format(motion='kind = "none"\n')
-    command = (
-        ("run", "case.toml", "--out", "out", "-q", "--no-band")
-        if draw(st.booleans())
-        else ("check", "case.toml")
-    )
+    named = {key if "." in key else f"motion.{key}": value for key, value in keys.items()}
+    changes = [word for key, one in named.items() if one is not None for word in ("--set", f"{key}={one}")]
+    command = RUN if draw(st.booleans()) else ("check", "case.toml")
     return Input(
-        arguments=(
-            *command,
-            "--motion",
-            f"motion{channel}",
-            *(word for one in changes for word in ("--set", one)),
-        ),
-        files={"case.toml": case.encode(), "motion": content},
+        arguments=(*command, "--motion", f"motion{channel}", *changes),
+        files={"case.toml": CASE.format(motion='kind = "none"\n').encode(), "motion": content},
     )
 
 
 #: content of a size [bytes], up to which it must be refused as soon as a small one
 HOSTILE: dict[str, Callable[[int], str]] = {
-    "count of PEER": lambda size: record_text("PEER").replace("NPTS=  200", "NPTS= 999999999"),
-    "count of ESM": lambda size: record_text("ESM").replace("NDATA: 200", "NDATA: 999999999"),
-    "interval": lambda size: record_text("PEER").replace(".0050", "1e-300"),
+    "count of PEER": lambda size: record_of("PEER").replace("NPTS=  200", "NPTS= 999999999"),
+    "count of ESM": lambda size: record_of("ESM").replace("NDATA: 200", "NDATA: 999999999"),
+    "interval": lambda size: record_of("PEER").replace(".0050", "1e-300"),
     "narrow numbers": lambda size: (
-        record_text("CSMIP V1").replace("(8f9.6)", "(99f1.0)").partition("\n 200")[0]
+        record_of("CSMIP V1").replace("(8f9.6)", "(99f1.0)").partition("\n 200")[0]
         + f"\n {size} Accelerogram points at 200 pts/sec in units of g. Format: (99f1.0)\n"
         + f"{'1' * 99}\n" * (size // 100)
     ),
@@ -134,7 +116,7 @@ HOSTILE: dict[str, Callable[[int], str]] = {
     "lines of nothing": lambda size: "\n" * size + "1",
     "a word behind numbers": lambda size: "0.005,-0.123456\n" * min(size // 16, MOST_SAMPLES - 1) + "a",
     "a word behind those of ESM": lambda size: (
-        record_text("ESM").replace("NDATA: 200", f"NDATA: {200 + size // 64}").rstrip("\n")
+        record_of("ESM").replace("NDATA: 200", f"NDATA: {200 + size // 64}").rstrip("\n")
         + "\n-0.12345678" * (size // 64 - 1)
         + "\na"
     ),
@@ -143,23 +125,13 @@ SIZES = (40, 40_000, 2_000_000, 33_000_000, 60_000_000)
 ENDLESS = ("/proc/kmsg", "/dev/zero", "/dev/tty", "/proc/self/mem", "/proc/kcore")
 
 
-def record_text(name: str) -> str:
-    return record_of(name).decode()
-
-
-def check_of(motion: str, /, **files: bytes) -> Input:
-    """A motion to be refused in little time and memory."""
-    case = CASE.format(motion='kind = "none"\n').encode()
-    return Input(
-        arguments=("check", "case.toml", "--motion", motion, "--set", "motion.unit=g"),
-        files={"case.toml": case} | files,
-        bounded=True,
-    )
-
-
-def hostile(name: str, size: int) -> Input:
-    """A file of `HOSTILE`."""
-    return check_of("motion", motion=HOSTILE[name](size).encode())
+def hostile(name: str, size: int = 0) -> Input:
+    """A file of `HOSTILE`, or a motion of another path, to be refused in little time and memory."""
+    files = {"case.toml": CASE.format(motion='kind = "none"\n').encode()}
+    if name in HOSTILE:
+        name, files["motion"] = "motion", HOSTILE[name](size).encode()
+    words = ("check", "case.toml", "--motion", name, "--set", "motion.unit=g")
+    return Input(arguments=words, files=files, bounded=True)
 
 
 #: file that a user or a file names -> the command and the files beside it
@@ -221,7 +193,7 @@ def special(name: str, kind: str) -> Input:
 def hostile_records(draw: Draw) -> Input:
     """A small file that asks for much memory or time, a large one that is no motion, or one without an end."""
     if draw(st.integers(0, 3)) == 0:
-        return check_of(draw(st.sampled_from(ENDLESS)))
+        return hostile(draw(st.sampled_from(ENDLESS)))
     return hostile(draw(st.sampled_from(sorted(HOSTILE))), draw(st.sampled_from(SIZES)))
 
 

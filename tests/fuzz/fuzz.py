@@ -27,10 +27,6 @@ from inputs import Input
 from options import options
 
 from fem.__main__ import main
-from fem.case.case import load_case
-from fem.model.model import build_model
-from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
 
 KINDS = inputs.KINDS | data_inputs.KINDS | {"option": options()}
 MOST_CPU, MOST_BYTES = 2.0, 300_000_000  #: of an input that is bounded [s, bytes]
@@ -62,6 +58,11 @@ class End:
 def end_of(given_input: Input) -> End:
     """How the program answers an input, in a folder of its own."""
     folder = Path(tempfile.mkdtemp(prefix="fuzz", dir=MEMORY if MEMORY.is_dir() else None))
+    for name, content in given_input.files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
+    for name, make in given_input.made.items():
+        make(folder / name)
     said, before = io.StringIO(), Path.cwd()
     clock = threading.Timer(LONG, os.kill, (os.getpid(), signal.SIGINT))
     # A collection of garbage over what a whole suite holds takes up to 1.5 s, which no user of the program has.
@@ -73,7 +74,6 @@ def end_of(given_input: Input) -> End:
         return End(code=code, words=words, cpu_s=took, bounded=given_input.bounded)
 
     try:
-        write_input(given_input, folder)
         os.chdir(folder)
         faulthandler.dump_traceback_later(HANGING, exit=True)
         clock.start()
@@ -104,19 +104,3 @@ def little_memory() -> Iterator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_AS, before)
-
-
-def write_input(given_input: Input, folder: Path) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in given_input.files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(content)
-    for name, make in given_input.made.items():
-        make(folder / name)
-
-
-def warm_up() -> None:
-    """Import and compile before the clocks run: an import that is interrupted leaves half a module behind."""
-    for model in ("rigid", "reduced", "full"):
-        built = build_model(load_case("seed_box", [f"solver.model={model}", "solver.duration_s=0.02"]))
-        simulate(built, Recorder(built))

@@ -98,21 +98,18 @@ def cases_by_schema(draw: Draw) -> Tables:
 @st.composite
 def vertical_motions(draw: Draw) -> dict[str, Any]:
     """Keys of a vertical motion, up to a floor that falls three times as fast as the container."""
-    keys = {
-        "peak_acceleration_m_s2": draw(st.floats(0.0, 30.0)),
-        "scale": draw(st.sampled_from((1.0, -1.0, 0.3))),
+    keys: dict[str, st.SearchStrategy[Any]] = {
+        "peak_acceleration_m_s2": st.floats(0.0, 30.0),
+        "scale": st.sampled_from((1.0, -1.0, 0.3)),
     }
     if draw(st.booleans()):
-        keys |= {
-            "kind": "harmonic",
-            "frequency_Hz": draw(st.floats(0.5, 40.0)),
-            "phase_rad": draw(st.floats(-3.0, 3.0)),
-        }
+        keys |= {"kind": st.just("harmonic"), "frequency_Hz": st.floats(0.5, 40.0)}
+        keys["phase_rad"] = st.floats(-3.0, 3.0)
     else:
-        shape = draw(st.sampled_from(("rectangular", "half-sine", "sine")))
-        keys |= {"kind": "pulse", "shape": shape, "pulse_s": draw(st.floats(1e-3, 0.5))}
-        keys["delay_s"] = draw(st.sampled_from((0.0, 0.02)))
-    return {f"vertical.{key}": value for key, value in keys.items()}
+        shapes = st.sampled_from(("rectangular", "half-sine", "sine"))
+        keys |= {"kind": st.just("pulse"), "shape": shapes, "pulse_s": st.floats(1e-3, 0.5)}
+        keys["delay_s"] = st.sampled_from((0.0, 0.02))
+    return {f"vertical.{key}": draw(values) for key, values in keys.items()}
 
 
 def present(tables: Tables, key: str) -> Any:
@@ -270,20 +267,15 @@ def damaged(draw: Draw, content: bytes) -> bytes:
 
 def toml_trees() -> st.SearchStrategy[str]:
     """TOML documents of any content: nested tables and lists under names that are known or are not."""
-    scalars = (
-        st.sampled_from(NASTY)
-        | st.integers().map(str)
-        | st.floats().map(repr)
-        | st.text(max_size=20).map(toml_value)
-    )
-    values = st.recursive(
-        scalars,
-        lambda inner: st.lists(inner, max_size=3).map(lambda parts: f"[{', '.join(parts)}]"),
-        max_leaves=8,
-    )
-    names = st.sampled_from(sorted({key.rpartition(".")[2] for key in FIELDS})) | st.text(max_size=8).map(
-        toml_value
-    )
+    scalars = st.sampled_from(NASTY) | st.integers().map(str) | st.floats().map(repr)
+    scalars |= st.text(max_size=20).map(toml_value)
+
+    def listed(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+        return st.lists(inner, max_size=3).map(lambda parts: f"[{', '.join(parts)}]")
+
+    values = st.recursive(scalars, listed, max_leaves=8)
+    known = sorted({key.rpartition(".")[2] for key in FIELDS})
+    names = st.sampled_from(known) | st.text(max_size=8).map(toml_value)
     lines = st.lists(st.tuples(names, values).map(" = ".join), max_size=6).map("\n".join)
     tables = st.lists(st.tuples(st.sampled_from([*TABLES, '"x.y"', "container.width_m"]), lines), max_size=4)
     return st.tuples(lines, tables).map(
@@ -297,17 +289,11 @@ def texts(draw: Draw) -> Input:
     shipped = CASES.text(draw(st.sampled_from(CASES.names))).encode()
     what = draw(st.integers(0, 9))
     if what == 0:
-        words = (
-            draw(st.sampled_from(sorted(FIELDS)) | st.text(max_size=9)),
-            draw(st.sampled_from(NASTY) | st.text(max_size=20)),
-        )
-        return Input(arguments=("check", "case.toml", "--set", "=".join(words)), files={"case.toml": shipped})
-    if what == 1:
-        content = draw(st.binary(max_size=400))
-    elif what == 2:
-        content = draw(toml_trees()).encode()
-    else:
-        content = draw(damaged(shipped))
+        key = draw(st.sampled_from(sorted(FIELDS)) | st.text(max_size=9))
+        change = f"{key}={draw(st.sampled_from(NASTY) | st.text(max_size=20))}"
+        return Input(arguments=("check", "case.toml", "--set", change), files={"case.toml": shipped})
+    contents = {1: st.binary(max_size=400), 2: toml_trees().map(str.encode)}
+    content = draw(contents.get(what, damaged(shipped)))
     return Input(arguments=("check", "case.toml"), files={"case.toml": content})
 
 

@@ -85,12 +85,9 @@ def random_tables(rng: np.random.Generator, model: str, longest: float) -> Table
         },
     }
     if chance(rng, 0.4):
-        angle = math.atan(width / (boxes * height))
-        tables["initial"] = {
-            "rotation_rad": float(np.clip(rng.normal() * angle, -1.5, 1.5)),
-            "angular_velocity_rad_s": pick(rng, 0.0, float(rng.normal() * 0.5)),
-            "velocity_m_s": pick(rng, 0.0, float(rng.normal())),
-        }
+        angle = float(np.clip(rng.normal() * math.atan(width / (boxes * height)), -1.5, 1.5))
+        spin, speed = pick(rng, 0.0, float(rng.normal() * 0.5)), pick(rng, 0.0, float(rng.normal()))
+        tables["initial"] = {"rotation_rad": angle, "angular_velocity_rad_s": spin, "velocity_m_s": speed}
     return tables
 
 

@@ -8,7 +8,6 @@ from runs import STACK
 
 from fem.case.case import Case
 from fem.model.container import Container, discretise
-from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, grid_quads
 from mesh.elevation import Elevation
 from mesh.errors import MeshError
@@ -39,27 +38,6 @@ def rigid_case(
     return STACK.with_values(keys | {key.replace("__", "."): value for key, value in changes.items()})
 
 
-def layer_shares(width: float, height: float, *, centroid: float, inertia_ratio: float) -> FloatArray:
-    """Shares of the mass, from the floor up, that three equal layers have of a block of given mass centre and inertia.
-
-    Args:
-        width, height: of the block [m].
-        centroid: height of the mass centre above the base [m].
-        inertia_ratio: moment of inertia about the mass centre over the mass [m2].
-    """
-    levels, layer = np.linspace(0.0, height, LAYERS + 1), height / LAYERS
-    middle = 0.5 * (levels[1:] + levels[:-1])
-    about_centroid = (middle - centroid) ** 2 + (layer**2 + width**2) / 12.0
-    conditions = np.stack([np.ones(LAYERS), middle, about_centroid])
-    shares = np.asarray(np.linalg.solve(conditions, [1.0, centroid, inertia_ratio]), dtype=np.float64)
-    if shares.min() < 0.0:
-        raise MeshError(
-            f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
-            f"{inertia_ratio:g} m2 times its mass"
-        )
-    return shares
-
-
 def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int = 1) -> Container:
     """The case's container with a given mass centre and moment of inertia, of three horizontal layers.
 
@@ -70,8 +48,16 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
         columns: elements across it.
     """
     width, height, mass = case.container.width_m, case.container.height_m, case.box_mass
-    shares = layer_shares(width, height, centroid=centroid, inertia_ratio=inertia_ratio)
     levels, layer = np.linspace(0.0, height, LAYERS + 1), height / LAYERS
+    middle = 0.5 * (levels[1:] + levels[:-1])
+    about_centroid = (middle - centroid) ** 2 + (layer**2 + width**2) / 12.0
+    conditions = np.stack([np.ones(LAYERS), middle, about_centroid])
+    shares = np.asarray(np.linalg.solve(conditions, [1.0, centroid, inertia_ratio]), dtype=np.float64)
+    if shares.min() < 0.0:
+        raise MeshError(
+            f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
+            f"{inertia_ratio:g} m2 times its mass"
+        )
     quads = grid_quads(columns, LAYERS)
     across = np.linspace(-0.5 * width, 0.5 * width, columns + 1)
     return discretise(

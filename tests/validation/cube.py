@@ -17,7 +17,7 @@ from evidence.findings import prediction
 from runs import finish, placed
 from validation import drawings
 from validation.bodies import cross_validated, rigid_case, specimen
-from validation.experiments import Experiment, Picture, measured_table
+from validation.experiments import Experiment, measured_table
 
 from contact.interface.equilibrium import Stance
 from fem.case.case import Case
@@ -85,7 +85,8 @@ def compute() -> Experiment:
     sides = sum(rebound.same_side > rebound.other_side for _, rebound in predicted)
     hop = max(rebound.hop for _, rebound in predicted)
     rest = max(rebound.rest_after for _, rebound in predicted)
-    authors = _damping_of(AUTHORS_RESTITUTION)
+    # the tried damping ratio with which a point rebounds nearest to this
+    authors = min(DAMPING_RATIOS, key=lambda ratio: abs(restitution_of(ratio) - AUTHORS_RESTITUTION))
     plastic = float(np.median([landed(landing, authors).same_side / landing.rebound for landing in landings]))
     middle = halves[0][0]
     turned = sum(
@@ -94,6 +95,15 @@ def compute() -> Experiment:
     )
     fits = " and ".join(
         f"{ratio:g} (a point rebounds with {restitution_of(ratio):.2f})" for ratio, _ in halves
+    )
+    landing = next(landing for landing in landings if landing.toss == SHOWN)
+    history = _history(landing, middle, FRICTION)
+    times, side = history["time_s"], np.sign(landing.rotation[0])
+    until_end = times <= landing.times[-1]
+    picture = drawings.landed(
+        landing.toss,
+        (landing.times, side * np.degrees(landing.rotation)),
+        (times[until_end], side * np.degrees(history["rotation_rad"][until_end])),
     )
     return Experiment(
         name="cube",
@@ -147,18 +157,7 @@ def compute() -> Experiment:
                 note="a control, no measurement: friction decides the side",
             ),
         ),
-        figures=(_picture(next(landing for landing in landings if landing.toss == SHOWN), halves[0][0]),),
-    )
-
-
-def _picture(landing: Landing, damping_ratio: float) -> Picture:
-    history = _history(landing, damping_ratio, FRICTION)
-    times, side = history["time_s"], np.sign(landing.rotation[0])
-    until_end = times <= landing.times[-1]
-    return drawings.landed(
-        landing.toss,
-        (landing.times, side * np.degrees(landing.rotation)),
-        (times[until_end], side * np.degrees(history["rotation_rad"][until_end])),
+        figures=(picture,),
     )
 
 
@@ -201,14 +200,21 @@ def landed(landing: Landing, damping_ratio: float, friction: float = FRICTION) -
 
 def _history(landing: Landing, damping_ratio: float, friction: float) -> History:
     case, container = _cube()
-    case = case.with_values(
-        {
-            "contact.damping_ratio": damping_ratio,
-            "contact.mu_static": friction,
-            "contact.mu_kinetic": friction,
-        }
+    values = {"contact.mu_static": friction, "contact.mu_kinetic": friction}
+    case = case.with_values(values | {"contact.damping_ratio": damping_ratio})
+    # the measured state at the last sample above 12 degrees; a corner that would lie in the table lies on it
+    times = landing.times[:SAMPLES]
+    speed, x = np.polyfit(times, landing.x[:SAMPLES], 1)
+    climb, height = np.polyfit(times, landing.height[:SAMPLES], 1)
+    _, rate, rotation = np.polyfit(times, landing.rotation[:SAMPLES], 2)
+    start = Stance(
+        centre=(float(x), max(float(height), float(_standing(rotation)))),
+        rotation=float(rotation),
+        velocity=(float(speed), float(climb)),
+        angular_velocity=float(rate),
+        force=np.zeros((2, 2)),
     )
-    return finish(placed(build_model(case, container), _start(landing))).history
+    return finish(placed(build_model(case, container), start)).history
 
 
 @cache
@@ -223,22 +229,6 @@ def _cube() -> tuple[Case, Container]:
         output__history_s=0.0005,
     )
     return case, specimen(case, centroid=0.5 * SIDE, inertia_ratio=INERTIA)
-
-
-def _start(landing: Landing) -> Stance:
-    """The measured state at the last sample above 12 degrees; a corner that would lie in the table lies on it."""
-    first = slice(0, SAMPLES)
-    times = landing.times[first]
-    speed, x = np.polyfit(times, landing.x[first], 1)
-    climb, height = np.polyfit(times, landing.height[first], 1)
-    _, rate, rotation = np.polyfit(times, landing.rotation[first], 2)
-    return Stance(
-        centre=(float(x), max(float(height), float(_standing(rotation)))),
-        rotation=float(rotation),
-        velocity=(float(speed), float(climb)),
-        angular_velocity=float(rate),
-        force=np.zeros((2, 2)),
-    )
 
 
 def _standing(rotation: FloatArray) -> FloatArray:
@@ -258,8 +248,3 @@ def _rebounds(rotation: FloatArray) -> tuple[float, float]:
     """Largest tilt after landing to the side of the start, and to the other [rad]."""
     after = np.sign(rotation[0]) * rotation[_landing(rotation) :]
     return max(0.0, float(after.max())), max(0.0, float(-after.min()))
-
-
-def _damping_of(restitution: float) -> float:
-    """The tried damping ratio with which a point rebounds nearest to this."""
-    return min(DAMPING_RATIOS, key=lambda ratio: abs(restitution_of(ratio) - restitution))

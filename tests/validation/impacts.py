@@ -27,14 +27,9 @@ WITHIN = 0.03
 def restitution_ratio(
     base: str, slenderness: float, width: float, strip: float = STRIP, modulus: float | None = None
 ) -> float:
-    """Restitution of the first impact over Housner's, of a rigid block on a preset of [floor].
+    """Restitution of the first impact over Housner's, of a rigid block as deep as wide [m] on a preset of [floor].
 
-    Args:
-        base: of `PRESETS`.
-        slenderness: height over width.
-        width: and depth of the block [m].
-        strip: share of the width that bears at each edge.
-        modulus: Young's modulus of the base [Pa]; None: that of the preset.
+    `strip`: share of the width that bears at each edge; `modulus`: that of the base [Pa], if not the preset's.
     """
     angle = math.atan(1.0 / slenderness)
     rate = math.sqrt(1.5 * 9.81 / (width * math.hypot(1.0, slenderness)))

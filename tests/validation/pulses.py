@@ -5,9 +5,10 @@ is predicted. The base reaches its speed in a millisecond and stops as quickly a
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import product
 
 import numpy as np
 from evidence.findings import prediction
@@ -105,8 +106,20 @@ def _picture(kicks: Sequence[Kick]) -> Picture:
 
 
 def fitted_size(kicks: Sequence[Kick]) -> BlockSize:
-    """The size with the most outcomes right; of several, the one in the middle of their list."""
-    scores = {size: sum(predicted(size, kick) == kick.overturned for kick in kicks) for size in _sizes()}
+    """The size with the most outcomes right; of several, the one in the middle of their list.
+
+    A single step of the base to a speed v just overturns a homogeneous block of v^2 = (8/3) g R (1 - cos al)/cos^2 al:
+    the angular momentum about a corner, and the energy to stand on it.
+    """
+    sizes = [
+        BlockSize(angle=al, radius=3.0 * v**2 * math.cos(al) ** 2 / (8.0 * 9.81 * (1.0 - math.cos(al))))
+        for al, v in product(ANGLES, SINGLE_STEPS)
+    ]
+    scores = {
+        size: sum(predicted(size, kick) == kick.overturned for kick in kicks)
+        for size in sizes
+        if size.radius >= LEAST_RADIUS
+    }
     best = [size for size, score in scores.items() if score == max(scores.values())]
     return best[len(best) // 2]
 
@@ -119,21 +132,6 @@ def predicted(size: BlockSize, kick: Kick) -> bool:
     if error is not None:
         raise ArithmeticError(f"{kick}: {error}")
     return verdict.outcome == Outcome.OVERTURNED
-
-
-def _sizes() -> Iterator[BlockSize]:
-    for angle in ANGLES:
-        for speed in SINGLE_STEPS:
-            if (radius := _radius(angle, speed)) >= LEAST_RADIUS:
-                yield BlockSize(angle=angle, radius=radius)
-
-
-def _radius(angle: float, speed: float) -> float:
-    """Radius of a homogeneous block that a single step of the base to this speed just overturns [m].
-
-    v^2 = (8/3) g R (1 - cos al)/cos^2 al: the angular momentum about a corner, and the energy to stand on it.
-    """
-    return 3.0 * speed**2 * math.cos(angle) ** 2 / (8.0 * 9.81 * (1.0 - math.cos(angle)))
 
 
 @cache

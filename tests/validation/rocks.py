@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -72,8 +73,19 @@ def compute(folder: Path | None) -> Experiment:
     every = np.ones(len(series.tests), dtype=bool)
     fitted = np.array([test.fitted for test in series.tests])
     targets = ~fitted if series.set_apart else every
-    fits, findings, figures, measures = [], [], [], _measures(series.tests)
-    others = []
+    sampled = [evenly_sampled(test.times, test.acceleration) for test in series.tests]
+    spectra = [
+        [response_spectrum(step, values, PERIODS, ratio).pseudo_acceleration_m_s2 for step, values in sampled]
+        for ratio in RATIOS
+    ]
+    #: measures of strength on which a threshold is fitted, each (tests,), by the predictor that chooses among them
+    measures = {
+        "threshold on the peak velocity": [np.array([test.peak_velocity for test in series.tests])],
+        "threshold on the response of one oscillator": [
+            column for values in spectra for column in np.array(values).T
+        ],
+    }
+    fits, findings, figures, others = [], [], [], []
     for number, name in enumerate(series.specimens):
         overturned = np.array([test.overturned[number] for test in series.tests])
         vote = Vote(falls={SHARP: shares[sharp], CAMBERED: shares}, overturned=overturned, records=records)
@@ -83,6 +95,7 @@ def compute(folder: Path | None) -> Experiment:
         tests = [test for test, target in zip(series.tests, targets, strict=True) if target]
         figures.append(drawings.shaken(name, tests, probabilities(votes), overturned[targets]))
         others.append(_scores(series, number, fitted, targets, vote, measures))
+    scores = [(name, ", ".join(f"{score[name]:.2f}" for score in others)) for name in others[0]]
     return Experiment(
         name=DESCRIBED.name,
         title=series.title,
@@ -92,7 +105,14 @@ def compute(folder: Path | None) -> Experiment:
         fitted=f"{DESCRIBED.fitted}, on {'the tests marked fit' if series.set_apart else 'all other records'}; on "
         f"all that may be used: {'; '.join(fits)}",
         findings=tuple(findings),
-        others=_others(others),
+        others=tuple(
+            Predictor(
+                name=name,
+                agreement=agreement,
+                source=SOURCES.get(name, "the same tests, fitted as the blocks are"),
+            )
+            for name, agreement in scores
+        ),
         figures=tuple(figures),
     )
 
@@ -100,12 +120,10 @@ def compute(folder: Path | None) -> Experiment:
 def blocks(body: shake_tests.Body) -> tuple[Block, ...]:
     """The blocks tried for a body."""
     angles = np.linspace(*body.angles, ANGLES).tolist()
-    sharp = [Block(angle=angle, restitution=restitution) for restitution in RESTITUTIONS for angle in angles]
+    sharp = [Block(angle=angle, restitution=one) for one, angle in product(RESTITUTIONS, angles)]
     cambered = [
         Block(angle=angle, uplift=uplift, damping=damping)
-        for uplift in UPLIFTS
-        for damping in DAMPINGS
-        for angle in angles
+        for uplift, damping, angle in product(UPLIFTS, DAMPINGS, angles)
     ]
     return (*sharp, *cambered)
 
@@ -185,73 +203,34 @@ def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bo
     doubted = int((wrong & ~agreed).sum())
     constant = float(seen * (1.0 - seen))
 
-    def stated(
-        what: str,
-        value: float,
-        reference: float | str,
-        *,
-        criterion: str = "",
-        met: bool = True,
-        note: str = "",
-    ) -> Finding:
-        finding = prediction(f"{name}: {what}", value, reference=reference, note=note)
-        return replace(finding, criterion=criterion, met=met) if criterion and judged else finding
-
+    predicted = "share of outcomes predicted", round(float(agreement), 3), "1"
+    scored = "Brier score of the probabilities", round(brier(chances, overturned), 3), "0"
+    fallen = "share overturned", round(float(share), 3), round(float(seen), 3)
+    unsure = "wrong predictions on which the blocks do not agree", doubted, int(wrong.sum())
+    within, half = abs(share - seen) <= SHARE_WITHIN, doubted >= UNSURE_SHARE * int(wrong.sum())
+    note = (
+        f"they agree, with {100 * AGREED:.0f} % of the votes, on {int(agreed.sum())} of {count} tests, of which "
+        f"{int((wrong & agreed).sum())} are wrong"
+    )
+    rows: list[tuple[tuple[str, float, float | str], str, bool, str]] = [
+        (predicted, f"at least {LEAST_AGREEMENT}", bool(agreement >= LEAST_AGREEMENT), ""),
+        (scored, "", True, f"{constant:.3f} where each has the probability of all"),
+        (fallen, f"within {SHARE_WITHIN}", bool(within), ""),
+        (unsure, "at least half", half, note),
+    ]
+    for low, high in ((0.0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 1.0)):
+        band = (chances >= low) & ((chances < high) | (high == 1.0))
+        what = f"overturned of {int(band.sum())} with a probability from {low:g} to {high:g}"
+        counted = what, round(float(chances[band].sum()), 1), int(overturned[band].sum())
+        rows += [(counted, "", True, "")] if band.any() else []
     return [
-        stated(
-            "share of outcomes predicted",
-            round(float(agreement), 3),
-            "1",
-            criterion=f"at least {LEAST_AGREEMENT}",
-            met=bool(agreement >= LEAST_AGREEMENT),
-        ),
-        stated(
-            "Brier score of the probabilities",
-            round(brier(chances, overturned), 3),
-            "0",
-            note=f"{constant:.3f} where each has the probability of all",
-        ),
-        stated(
-            "share overturned",
-            round(float(share), 3),
-            round(float(seen), 3),
-            criterion=f"within {SHARE_WITHIN}",
-            met=bool(abs(share - seen) <= SHARE_WITHIN),
-        ),
-        stated(
-            "wrong predictions on which the blocks do not agree",
-            doubted,
-            int(wrong.sum()),
-            criterion="at least half",
-            met=doubted >= UNSURE_SHARE * int(wrong.sum()),
-            note=f"they agree, with {100 * AGREED:.0f} % of the votes, on {int(agreed.sum())} of {count} tests, of "
-            f"which {int((wrong & agreed).sum())} are wrong",
-        ),
-        *(
-            stated(
-                f"overturned of {int(band.sum())} with a probability from {low:g} to {high:g}",
-                round(float(chances[band].sum()), 1),
-                int(overturned[band].sum()),
-            )
-            for low, high in ((0.0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 1.0))
-            if (band := (chances >= low) & ((chances < high) | (high == 1.0))).any()
-        ),
+        prediction(f"{name}: {what}", value, reference=reference, note=note)
+        if not (criterion and judged)
+        else prediction(
+            f"{name}: {what}", value, reference=reference, note=note, criterion=criterion, met=met
+        )
+        for (what, value, reference), criterion, met, note in rows
     ]
-
-
-def _measures(tests: Sequence[shake_tests.ShakeTest]) -> dict[str, list[FloatArray]]:
-    """Measures of strength on which a threshold is fitted, each (tests,), by the predictor that chooses among them."""
-    sampled = [evenly_sampled(test.times, test.acceleration) for test in tests]
-    spectra = [
-        [response_spectrum(step, values, PERIODS, ratio).pseudo_acceleration_m_s2 for step, values in sampled]
-        for ratio in RATIOS
-    ]
-    return {
-        "threshold on the peak velocity": [np.array([test.peak_velocity for test in tests])],
-        "threshold on the response of one oscillator": [
-            column for values in spectra for column in np.array(values).T
-        ],
-    }
 
 
 def _scores(
@@ -286,14 +265,3 @@ SOURCES = {
     "discrete elements in three dimensions, contact stiffness tuned on these tests": "the authors; 0.87 and 0.90 of "
     "all 582",
 }
-
-
-def _others(scores: Sequence[dict[str, float]]) -> tuple[Predictor, ...]:
-    return tuple(
-        Predictor(
-            name=name,
-            agreement=", ".join(f"{score[name]:.2f}" for score in scores),
-            source=SOURCES.get(name, "the same tests, fitted as the blocks are"),
-        )
-        for name in scores[0]
-    )

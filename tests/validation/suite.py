@@ -12,7 +12,7 @@ from validation.shake_tests import read_series
 from fem.run.expected import say_expected
 from fem.runtime.progress import ScreenReporter
 
-__all__ = ["document_of", "require", "run_validation"]
+__all__ = ["document_of", "require", "run_validation"]  # of the command
 ALL_S, TABLE_S = 60.0, 240.0  #: without and with tests on a shake table
 
 
@@ -23,12 +23,7 @@ def require(data: Path | None) -> None:
 
 
 def run_validation(data: Path | None, *, reporter: ScreenReporter) -> list[Experiment]:
-    """Compute every experiment.
-
-    Args:
-        data: folder of shake-table tests; None leaves that experiment out.
-        reporter: told the name of each.
-    """
+    """Compute every experiment; without a folder of shake-table tests all but those."""
     require(data)
     expected = ALL_S + (TABLE_S if data is not None else 0.0)
     say_expected(reporter, "the experiments, once kernels are compiled", expected)
