@@ -124,6 +124,7 @@ def compiling() -> Measured:
 
 
 def memory_of(*arguments: str) -> Measured:
+    """Of a command on two cores."""
     found = out(*arguments)
     return found.peak, f"{found.wall:.0f} s, {found.cpu:.0f} CPU s"
 
@@ -187,12 +188,8 @@ def over_moreau(name: str) -> Measured:
     20 s on a floor x = 0.05 m sin(6.93 t) that starts with a jerk, in the settings of maps. The kernel: one rigid
     block, plastic impacts, steps of 1 ms, no springs, no ledger, no choice of steps.
     """
-    changes = (
-        "solver.model=rigid",
-        "container.section=solid",
-        "contact.mu_static=0.4",
-        "contact.mu_kinetic=0.4",
-    )
+    changes = ("solver.model=rigid", "container.section=solid")
+    changes += ("contact.mu_static=0.4", "contact.mu_kinetic=0.4")
     changes += ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "motion.start=rest")
     changes += ("solver.energy_tolerance=30", "solver.step_s=0.026", "contact.normal_penalty_Pa_m=1.2e9")
     case = load_case(name, [*changes, "solver.duration_s=20"])
@@ -201,10 +198,8 @@ def over_moreau(name: str) -> Measured:
     def fresh() -> list[Model]:
         models = [build_model(case, container) for _ in range(ROWS)]
         none = make_samples(math.inf, 4, models[0].run.old.point.shape[0])
-        return [
-            replace(one, run=one.run._replace(buffers=one.run.buffers._replace(history=none)))
-            for one in models
-        ]
+        kept = [one.run._replace(buffers=one.run.buffers._replace(history=none)) for one in models]
+        return [replace(one, run=run) for one, run in zip(models, kept, strict=True)]
 
     def own(models: list[Model]) -> None:
         for one in models:
@@ -250,14 +245,10 @@ def band(*changes: str) -> Measured:
 # Pictures
 
 
-def run_of(name: str, *changes: str) -> Any:
-    case = load_case(name, ["output.figures=false", *changes])
-    run_case(case, case_text=case.text, folder=place() / name, options=RunOptions(band=False, force=True))
-    return fem.open_run(place() / name)
-
-
 def figures() -> Measured:
-    run = run_of("seed_stack_plateau", "output.fields_s=0")
+    case = load_case("seed_stack_plateau", ["output.figures=false", "output.fields_s=0"])
+    run_case(case, case_text=case.text, folder=place() / "run", options=RunOptions(band=False, force=True))
+    run = fem.open_run(place() / "run")
     container = discretise(run.case)
     write_figures(run, container)  # loads the fonts
     return median_of(3, lambda: cpu_seconds(lambda: write_figures(fem.open_run(run.folder), container)))
@@ -286,9 +277,8 @@ def outcome_map(model: str, cells: int) -> Any:
         read_axis("motion.angular_frequency_rad_s", frequency),
         read_axis(PEAK, {"from": 1.0, "to": 16.0, "count": cells}),
     )
-    return replace(
-        shipped, base=shipped.base.with_values({"solver.model": model}), axes=axes, perturbation=alone
-    )
+    base = shipped.base.with_values({"solver.model": model})
+    return replace(shipped, base=base, axes=axes, perturbation=alone)
 
 
 def random_motion(seed: int) -> np.ndarray:
@@ -378,11 +368,6 @@ def wrong_verdicts() -> Measured:
     return sum(map(bool, sure)) / max(1, len(sure)), f"{len(sure)} sure, {decided} of {len(found)} decided"
 
 
-def command(*arguments: str) -> Callable[[], Measured]:
-    """Memory of a command on two cores."""
-    return partial(memory_of, *arguments, "-j", "2")
-
-
 #: name, target, value of November 2026 on two cores, a star where five minutes measure it, what is measured
 TABLE = """
 page             <= 70    31     * first page: `run`, empty cache, without pip [s]
@@ -432,9 +417,9 @@ MEASURES: dict[str, Callable[[], Measured]] = {
     "map-reduced": lambda: map_seconds(outcome_map("reduced", 50)),
     "artificial": artificial,
     "memory-run": partial(memory_of, "run", "rocking"),
-    "memory-sweep": command("sweep", "outcome_map"),
-    "memory-ensemble": command("ensemble", "fragility"),
-    "memory-site": command("assess", "site"),
+    "memory-sweep": partial(memory_of, "sweep", "outcome_map", "-j", "2"),
+    "memory-ensemble": partial(memory_of, "ensemble", "fragility", "-j", "2"),
+    "memory-site": partial(memory_of, "assess", "site", "-j", "2"),
     "site": lambda: out("assess", "site", "-j", "2").wall,
     "words": wrong_verdicts,
 }

@@ -83,11 +83,8 @@ def by(rows: Sequence[Row], key: str) -> list[tuple[str, list[Row]]]:
 
 def largest_use(rows: Sequence[Row]) -> str:
     """The largest error over its tolerance."""
-    used = [
-        math.nan if row["error"] is None else row["error"] / row["tolerance"]
-        for row in rows
-        if row["tolerance"]
-    ]
+    judged = [row for row in rows if row["tolerance"]]
+    used = [math.nan if row["error"] is None else row["error"] / row["tolerance"] for row in judged]
     return f"{max(used):.2f}" if used and math.isfinite(max(used)) else ABSENT
 
 
@@ -188,26 +185,16 @@ def missed_first(experiments: Sequence[Row]) -> list[Row]:
 def study_lines(document: Document) -> list[str]:
     """One line a claim, for a terminal, by conclusion, those refuted and those bounded first; and the counts."""
     entries = [entry for group in document["groups"] for entry in group["statements"]]
-    groups = [
-        (
-            verdict,
-            [
-                f"  {entry['name']:<30} {bounds_or_rule(entry)}"
-                for entry in entries
-                if entry["verdict"] == verdict
-            ],
-        )
-        for verdict in sorted({entry["verdict"] for entry in entries}, key=FIRST.index)
-    ]
+    groups = []
+    for verdict in sorted({entry["verdict"] for entry in entries}, key=FIRST.index):
+        chosen = [entry for entry in entries if entry["verdict"] == verdict]
+        words = [entry["bounds"] if verdict == FIRST[1] else rule(entry) for entry in chosen]
+        lines = [f"  {one['name']:<30} {said}" for one, said in zip(chosen, words, strict=True)]
+        groups.append((verdict, lines))
     counts = ", ".join(
         f"{count} {plural(name, count)}" for name, count in document["counts"].items() if count
     )
     return _table_lines(groups, f"{document['statements']} claims: {counts}")
-
-
-def bounds_or_rule(entry: Row) -> str:
-    """The bounds of a claim that holds within them alone; else how many comparisons hold."""
-    return str(entry["bounds"]) if entry["verdict"] == FIRST[1] else rule(entry)
 
 
 def rule(entry: Row) -> str:

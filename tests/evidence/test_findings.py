@@ -42,11 +42,7 @@ SECOND = falling([1e-2 / 4**k for k in range(4)])
         *((at_most("a", value, 1.0), value <= 1.0) for value in (1.0, 1.1, math.nan)),
         *((at_least("a", value, 1.0), value >= 1.0) for value in (1.0, 0.9, math.nan)),
         *((equal("a", value, 1.0, 0.05), value == 1.04) for value in (1.04, 1.06, math.nan)),
-        *(
-            (finding(value, relative=share), False)
-            for value in (math.nan, math.inf)
-            for share in (True, False)
-        ),
+        *((finding(one, relative=share), False) for one in (math.nan, math.inf) for share in (True, False)),
         *((prediction("a", 1.0, reference="2 to 3", met=met), met) for met in (True, False, None)),
     ],
 )

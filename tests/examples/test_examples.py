@@ -72,9 +72,7 @@ def test_a_scan_finds_the_uplift_acceleration(example):
 def test_a_container_left_behind_by_a_jerk_has_slid_as_far_as_a_rigid_slider(example):
     names = example("motion_from_arrays")
     floor, friction, jerk = 6.0, 0.3 * GRAVITY, 0.25
-    distance = (
-        0.5 * floor * (floor - friction) / friction * jerk**2
-    )  # until floor and slider are equally fast
+    distance = 0.5 * floor * (floor - friction) / friction * jerk**2  # until both are equally fast
     assert names["run"].verdict.outcome == "slide"
     assert names["run"].verdict.residual_slip_m == pytest.approx(-distance, rel=0.01)
 
@@ -144,9 +142,8 @@ def test_a_response_curve_leaves_rest_where_the_floor_is_stronger_than_friction(
 
 def test_a_site_where_a_run_overturns_is_not_fulfilled(study):
     table = study("assess_a_site")
-    assert table.result["action"]["ag_S_m_s2"] == pytest.approx(
-        1.35 * 3.5
-    )  # EN 1998-1:2004, Table 3.2, ground D
+    # EN 1998-1:2004, Table 3.2, ground D
+    assert table.result["action"]["ag_S_m_s2"] == pytest.approx(1.35 * 3.5)
     assert "overturned" in table["outcome"]
     assert table.result["answer"].startswith("Not fulfilled")
 

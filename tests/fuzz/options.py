@@ -6,29 +6,14 @@ begun, and nothing is written outside the folder of the input.
 
 from typing import Any
 
+from data_inputs import CASE
 from hypothesis import strategies as st
 from inputs import NASTY, Input
 
 from fem.__main__ import COMMANDS, build_app
 
 Draw = Any
-CASE = """schema = 1
-[container]
-width_m = 1.1
-height_m = 2.0
-weight_N = 24525.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "harmonic"
-amplitude_m = 0.05
-angular_frequency_rad_s = 7.0
-[solver]
-model = "rigid"
-duration_s = 0.3
-[output]
-fields_s = 0.1
-"""
+SHAKEN = CASE.format(motion='kind = "harmonic"\namplitude_m = 0.05\nangular_frequency_rad_s = 7.0\n')
 #: commands that would begin something long whatever they are told
 LONG = {"study", "verify", "ensemble", "sweep", "response"}
 #: commands that read a folder of results
@@ -61,4 +46,4 @@ def options(draw: Draw) -> Input:
             words.append(draw(st.sampled_from(PLACES)))
         elif (argument.hint in (bool, bool | None)) == (draw(st.integers(0, 15)) == 0):
             words.append(draw(st.sampled_from(SETTINGS if option == "--set" else VALUES)))
-    return Input(arguments=tuple(words), files={"case.toml": CASE.encode()})
+    return Input(arguments=tuple(words), files={"case.toml": SHAKEN.encode()})

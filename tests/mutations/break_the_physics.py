@@ -24,6 +24,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
 COPIED = ("fem", "mesh", "contact", "tests")
@@ -54,8 +55,7 @@ FAULTS = [
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
+class Finding(NamedTuple):
     """What became of one fault."""
 
     mutation: Mutation
@@ -82,10 +82,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with ThreadPoolExecutor(options.jobs) as pool:
             findings = []
             for finding in pool.map(partial(judge, folder=folder), chosen):
-                print(line_of(finding), flush=True)
+                where = f"{finding.mutation.file:<24} {finding.mutation.name}\n{'':20} {finding.by}"
+                print(f"{finding.verdict:<10} {finding.seconds:5.0f} s  {where}", flush=True)
                 findings.append(finding)
-    survivors = sum(finding.verdict == "SURVIVES" for finding in findings)
-    unjudged = sum(finding.verdict == "no verdict" for finding in findings)
+    survivors, unjudged = (
+        sum(one.verdict == word for one in findings) for word in ("SURVIVES", "no verdict")
+    )
     print(f"{len(findings)} faults: {survivors} survive, {unjudged} without a verdict")
     return 2 if unjudged else int(survivors > 0)
 
@@ -93,11 +95,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def soundness(folder: Path, mutations: Sequence[Mutation]) -> str:
     """The first test that fails without any fault, or nothing."""
     with copied_tree(folder) as tree:
-        for tests in dict.fromkeys(mutation.tests for mutation in mutations):
-            code, by = run_tests(tree, tests)
-            if code != TESTS_PASSED:
-                return by
-    return ""
+        ends = (run_tests(tree, tests) for tests in dict.fromkeys(one.tests for one in mutations))
+        return next((by for code, by in ends if code != TESTS_PASSED), "")
 
 
 def judge(mutation: Mutation, folder: Path) -> Finding:
@@ -146,12 +145,6 @@ def run_tests(tree: Path, tests: Sequence[str]) -> tuple[int, str]:
     failed = re.search(r"^_+ (?:ERROR at \w+ of )?(\S.*?) _+$", result.stdout, re.MULTILINE)
     last = (result.stdout.strip() or result.stderr.strip() or "nothing said").splitlines()[-1]
     return result.returncode, failed.group(1) if failed else last
-
-
-def line_of(finding: Finding) -> str:
-    """One line of the table."""
-    mutation = finding.mutation
-    return f"{finding.verdict:<10} {finding.seconds:5.0f} s  {mutation.file:<24} {mutation.name}\n{'':20} {finding.by}"
 
 
 if __name__ == "__main__":

@@ -4,14 +4,18 @@ A conclusion is never written down: it follows from findings, which compare numb
 Rotation > 0 tilts toward +x; SI units, each with its number.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
 
 from evidence.findings import Finding, failures
+from matplotlib.figure import Figure
 from paper.cases import PaperCase
 from paper.experiments import Experiments, VariantBand
+
+from fem.figures.style import GREY, WIDTH, house_style, svg_of
+from fem.runtime.arrays import FloatArray
 
 
 class Conclusion(Enum):
@@ -70,6 +74,51 @@ class ClaimFigure:
     svg: str
 
 
+#: distinguishable without colour vision (Okabe and Ito) and dark enough on white
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")
+HEIGHT = 3.3  #: [inch]
+
+
+class Curve(NamedTuple):
+    """A line, or points where the style of matplotlib says so."""
+
+    x: Sequence[float] | FloatArray
+    y: Sequence[float] | FloatArray
+    label: str = ""
+    style: str = "-"
+
+
+def draw_curves(
+    name: str,
+    caption: str,
+    labels: str,
+    lines: Sequence[Curve],
+    *,
+    levels: Mapping[str, float] | None = None,
+    log_x: bool = False,
+    y_limits: tuple[float, float] | None = None,
+) -> ClaimFigure:
+    """Curves over one pair of axes, labelled "x | y"; `levels` are horizontal lines with a name."""
+    with house_style():
+        figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
+        across, up = labels.split(" | ")
+        axes = figure.add_subplot(xlabel=across, ylabel=up)
+        for line, colour in zip(lines, COLOURS * (1 + len(lines) // len(COLOURS)), strict=False):
+            axes.plot(line.x, line.y, line.style, color=colour, label=line.label, linewidth=1.4, markersize=4)
+        for text, level in (levels or {}).items():
+            axes.axhline(level, color=GREY, linewidth=0.8, linestyle=":")
+            coordinates = ("axes fraction", "data")
+            axes.annotate(text, (1.0, level), xycoords=coordinates, ha="right", va="bottom", color=GREY)
+        if log_x:
+            axes.set_xscale("log")
+        if y_limits is not None:
+            axes.set_ylim(*y_limits)
+        if any(line.label for line in lines):
+            figure.legend(loc="outside lower center", ncols=4)
+        axes.margins(x=0.02)
+    return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))
+
+
 @dataclass(frozen=True, kw_only=True)
 class ClaimResult:
     """What the check of a claim showed."""
@@ -99,8 +148,16 @@ class ClaimResult:
             "drawings": [{"name": figure.name, "caption": figure.caption} for figure in self.figures],
             "band": None if self.band is None else self.band.to_dict(),
             "verdict": self.conclusion.value,
-            "rule": counts_in_words(self.comparisons, self.bounds) if self.comparisons else "",
+            "rule": self.rule if self.comparisons else "",
         }
+
+    @property
+    def rule(self) -> str:
+        """How many comparisons hold, in all and inside the bounds."""
+        failed, count = failures(self.comparisons), len(self.comparisons)
+        inside = [finding for finding in self.comparisons if finding.inside]
+        within = f"; {len(inside) - failures(inside)} of {len(inside)} inside the bounds"
+        return f"{count - failed} of {count} comparisons hold" + (within if self.bounds and failed else "")
 
 
 def conclude(comparisons: Sequence[Finding], bounds: str, kind: ClaimKind = "statement") -> Conclusion:
@@ -117,16 +174,6 @@ def conclude(comparisons: Sequence[Finding], bounds: str, kind: ClaimKind = "sta
     if bounds and inside and all(inside):
         return Conclusion.BOUNDED
     return Conclusion.MISPRINT if kind == "print" else Conclusion.REFUTED
-
-
-def counts_in_words(comparisons: Sequence[Finding], bounds: str) -> str:
-    """How many comparisons hold, in all and inside the bounds."""
-    failed = failures(comparisons)
-    text = f"{len(comparisons) - failed} of {len(comparisons)} comparisons hold"
-    if bounds and failed:
-        inside = [finding for finding in comparisons if finding.inside]
-        text += f"; {len(inside) - failures(inside)} of {len(inside)} inside the bounds"
-    return text
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,10 +7,9 @@ import numpy as np
 from evidence.findings import at_least, at_most
 from paper import criteria, maps
 from paper.cases import BOX, SHELL, STACK, PaperCase, friction
-from paper.claims import ClaimFigure, Evidence, claim, outcomes, table
+from paper.claims import ClaimFigure, Curve, Evidence, claim, draw_curves, outcomes, table
 from paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, PAPER_MU, UPLIFT
 from paper.experiments import Experiments
-from paper.figures import Curve, draw_curves, draw_map
 
 from fem.figures.heat_map import MapCurve
 from fem.results.outcome import Outcome
@@ -171,7 +170,7 @@ def paper_criteria(experiments: Experiments) -> Evidence:
         [(mode, *(modes[mode, observed] for observed in names)) for mode in names if mode in said],
     )
     smooth = np.linspace(min(maps.FREQUENCIES), max(maps.FREQUENCIES), 100)
-    yield draw_map(
+    yield maps.draw_map(
         "criteria-map",
         "Outcome of the rigid stack, mu 0.4/0.2, with the criteria; hatched: unsure cells.",
         stack,
@@ -256,7 +255,7 @@ def _witnesses(outcome_map: maps.OutcomeMap, criterion: criteria.Criterion) -> l
 def _shape_figure(outcome_map: maps.OutcomeMap) -> ClaimFigure:
     frequency = f"{outcome_map.every[0].motion.angular_frequency:g}"
     shapes = np.array(maps.SLENDERNESS)
-    return draw_map(
+    return maps.draw_map(
         f"slenderness-friction-{frequency}".replace(".", "-"),
         f"Outcome over slenderness and friction (mu_k = mu_s/2): {outcome_map.title}; hatched: unsure cells.",
         outcome_map,

@@ -30,6 +30,7 @@ from fem.study.runner import Row
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
 SUPPORTS = ("feet", "flat")
+NONE_HOLDS = "it holds in none of them"
 
 
 class FailedRunError(RuntimeError):
@@ -64,14 +65,10 @@ class VariantBand:
     drop: bool = False  #: mu_k is below mu_s
 
     @property
-    def low(self) -> float:
-        """Smallest computed value; nan without any."""
-        return min((member.value for member in self.members if member.value is not None), default=math.nan)
-
-    @property
-    def high(self) -> float:
-        """Largest computed value; nan without any."""
-        return max((member.value for member in self.members if member.value is not None), default=math.nan)
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest computed value; nan without any."""
+        values = [member.value for member in self.members if member.value is not None] or [math.nan]
+        return min(values), max(values)
 
     @property
     def holding(self) -> int:
@@ -79,29 +76,24 @@ class VariantBand:
         return sum(member.holds is True for member in self.members)
 
     @property
-    def chance(self) -> bool:
-        """Whether friction drops and only some variants slide while they rock; see the claim rigid-assumption."""
-        return self.drop and set(ROCKING) <= {member.outcome for member in self.members}
-
-    @property
     def summary(self) -> str:
         """One line: how often the criterion holds, and whether that depends on the variant."""
         total = len(self.members)
         failed = sum(member.holds is None for member in self.members)
         lost = f", {failed} not computed" if failed else ""
-        if self.holding == total:
-            change = "deformation, contact and support do not change it"
-        elif self.holding == 0:
-            change = "it holds in none of them"
-        else:
-            change = "it depends on deformation, contact or support"
-        if self.chance:
+        change = "it depends on deformation, contact or support"
+        if self.holding in (0, total):
+            change = (
+                "deformation, contact and support do not change it" if self.holding == total else NONE_HOLDS
+            )
+        # friction drops, and only some variants slide while they rock; see the claim rigid-assumption
+        if self.drop and set(ROCKING) <= {member.outcome for member in self.members}:
             change += "; with mu_k below mu_s it is chance which of them slide after an impact"
         return f"holds in {self.holding} of {total}{lost}: {change}"
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `study.json`."""
-        return asdict(self) | {"low": self.low, "high": self.high, "summary": self.summary}
+        return asdict(self) | dict(zip(("low", "high"), self.ends, strict=True)) | {"summary": self.summary}
 
 
 def variant_result(case: PaperCase, outcome: str | None, value: float | None, holds: bool) -> VariantResult:
@@ -121,12 +113,10 @@ def stands(row: Row) -> bool:
 
 
 class Experiments:
-    """Runs cases and remembers their results.
+    """Runs cases on so many cores, or all, and remembers their results.
 
-    Args:
-        jobs: cores to use; None: all.
-        progress: called with the number of finished runs of a batch and of all.
-        stop: called now and then; true ends the work with `InterruptedStudyError`.
+    `progress` is called with the number of finished runs of a batch and of all; `stop` now and then: true ends the work
+    with `InterruptedStudyError`.
     """
 
     def __init__(
@@ -150,12 +140,7 @@ class Experiments:
         return self._makers[paper_case.base](paper_case.values)
 
     def rows(self, cases: Sequence[PaperCase], *, also_failed: bool = False) -> list[Row]:
-        """Verdict scalars of each case, in order.
-
-        Args:
-            cases: in the order of the rows.
-            also_failed: return the rows of failed runs as well, with outcome None.
-        """
+        """Verdict scalars of each case, in order; on request those of failed runs as well, with outcome None."""
         missing = {case.key: self.case(case) for case in cases if case.key not in self._rows}
         if missing:
             computed = run_cases(
@@ -235,10 +220,7 @@ class Experiments:
     ) -> VariantBand:
         """One number of a case over deformation, contact stiffness, contact damping and support.
 
-        Args:
-            paper_case: the case of the claim.
-            quantity, unit, value: the number, taken from a row.
-            criterion, holds: what the claim requires of a row.
+        `value` takes the number from a row; `criterion` and `holds` are what the claim requires of a row.
         """
         variants = self.variants(paper_case)
         members = []

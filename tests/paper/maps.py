@@ -15,15 +15,18 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from paper.cases import FOR_MAPS, SHELL, STACK, PaperCase, friction
+from paper.claims import ClaimFigure
 from paper.criteria import Contingency, Criterion, MapMotion, contingency, motion_of
 from paper.dimensions import ANGULAR_FREQUENCY, BOX_WEIGHT, FREQUENCY_PARAMETER, PAPER_MU, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments, stands
 
-from fem.figures.heat_map import MapAxis
+from fem.figures.heat_map import MapAxis, MapCurve, Panel, draw_heat_map
+from fem.figures.style import svg_of
 from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray
 from fem.study.axes import Axis
 from fem.study.design import Perturbation
+from fem.study.maps import OUTCOME_COLOURS
 from fem.study.runner import Row
 from fem.study.sure import near_cells
 
@@ -104,12 +107,7 @@ class OutcomeMap:
     def standing_share(
         self, criterion: Criterion = lambda motion: True, frequencies: Collection[float] = ()
     ) -> float:
-        """Of the computed cells that a criterion turns over, the share that stands; nan without any.
-
-        Args:
-            criterion: says which cells overturn; default: all.
-            frequencies: only cells at these, if there are any [rad/s].
-        """
+        """Of the computed cells that a criterion turns over, at some frequencies [rad/s], the share that stands."""
         stood = [
             cell.stood
             for cell in self.cells
@@ -126,14 +124,9 @@ def stack_map(
     rigid: bool = True,
     perturbed: bool = True,
 ) -> OutcomeMap:
-    """The stack over frequency and peak acceleration.
+    """The stack over frequency and peak acceleration [m/s2]; rigid, or a shell at every second of either.
 
-    Args:
-        experiments: computes the cells.
-        mu: static and kinetic friction.
-        peaks: [m/s2].
-        rigid: or a shell, at every second frequency and peak.
-        perturbed: find out which cells are sure; all count as sure otherwise.
+    `mu`: static and kinetic friction; `perturbed`: find out which cells are sure; all count as sure otherwise.
     """
     base = STACK.but(FOR_MAPS, friction(*mu), duration=15.0)
 
@@ -230,3 +223,18 @@ def _computed(
     ]
     title = f"{'rigid' if rigid else 'shell'} {title}"
     return OutcomeMap(title=title, rigid=rigid, x=x, y=y, every=cells)
+
+
+def draw_map(name: str, caption: str, outcome_map: OutcomeMap, curves: Sequence[MapCurve]) -> ClaimFigure:
+    """Outcome of every cell by colour, unsure cells hatched, curves on top."""
+    words = list(OUTCOME_COLOURS)
+    panel = Panel(
+        values=np.array(
+            [[words.index(cell.row["outcome"] or "failed") for cell in row] for row in outcome_map.rows]
+        ),
+        overturned=np.array([[cell.fell for cell in row] for row in outcome_map.rows]),
+        unsure=np.array([[not cell.sure for cell in row] for row in outcome_map.rows]),
+        curves=curves,
+    )
+    figure = draw_heat_map(outcome_map.x, outcome_map.y, [panel], colours=OUTCOME_COLOURS)
+    return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))

@@ -8,11 +8,10 @@ from evidence.findings import at_least, at_most
 from first_swing import first_swing_threshold
 from floors import sine_floor
 from paper.cases import FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK
-from paper.claims import Evidence, claim, table
+from paper.claims import Curve, Evidence, claim, draw_curves, table
 from paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, HALF_WIDTH, HOLDING, PAPER_MU, UPLIFT
 from paper.experiments import Experiments, capped_ratio, stands
-from paper.figures import Curve, draw_curves, draw_map
-from paper.maps import FAST, FREQUENCIES, MapCell, stack_map
+from paper.maps import FAST, FREQUENCIES, MapCell, draw_map, stack_map
 
 from fem.figures.heat_map import MapCurve
 

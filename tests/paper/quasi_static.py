@@ -7,10 +7,9 @@ import numpy as np
 from closed_forms import holding_acceleration
 from evidence.findings import Finding, at_least, at_most, equal
 from paper.cases import BOX, FOR_MAPS, NO_SLIDING, RIGID, SHELL, STACK, PaperCase, friction
-from paper.claims import Evidence, claim
+from paper.claims import Curve, Evidence, claim, draw_curves
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, UPLIFT, WIDTH
 from paper.experiments import Experiments
-from paper.figures import Curve, draw_curves
 
 from fem.results.outcome import SLIDING, Outcome
 

@@ -6,10 +6,9 @@ import numpy as np
 from closed_forms import quarter_period
 from evidence.findings import at_least, at_most, equal
 from paper.cases import BOX, FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
-from paper.claims import Evidence, claim
+from paper.claims import Curve, Evidence, claim, draw_curves
 from paper.dimensions import GRAVITY, HEIGHT, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments, VariantBand, stands, variant_result
-from paper.figures import Curve, draw_curves
 from runs import Finished
 
 from contact.reference.rigid_block import RigidBlock

@@ -9,16 +9,15 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 from evidence.findings import attempted
 from evidence.pages import page_of
 from jinja2 import UndefinedError
+from paper import counting, example, overturning, quasi_static, rocking, shape, sliding, stacking
 from paper.claims import Claim, Conclusion
 from paper.experiments import Experiments, InterruptedStudyError
-from paper.index import TOPICS, UNTRIED, all_claims
 
 from fem.case.validation import CaseError, did_you_mean
 from fem.html.page import Signature
@@ -32,17 +31,64 @@ from fem.runtime.progress import ScreenReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 
+#: every claim of the paper that is checked, by topic, each in the order of its file
+TOPICS = {
+    title: tuple(claim for claim in vars(module).values() if isinstance(claim, Claim))
+    for title, module in {
+        "The central claim, counted": counting,
+        "The example of section 7": example,
+        "Limit conditions": quasi_static,
+        "Sliding and friction": sliding,
+        "Rocking and response": rocking,
+        "Overturning": overturning,
+        "The body": shape,
+        "Boxes without bolts": stacking,
+    }.items()
+}
+
+#: sentences of the paper that no run can confirm or refute: section, quote, reason
+UNTRIED = (
+    (
+        "3",
+        "For simplicity ... the seismic action is assumed to be a horizontal harmonic ground motion",
+        'An assumption, not a claim; recorded motions are another study (motion.kind = "table").',
+    ),
+    (
+        "3",
+        "the asperity of both contact surfaces being represented by constant coefficients",
+        "An assumption; the effect of the coefficients is checked under sliding.",
+    ),
+    (
+        "4.1",
+        "there is no simple engineering solution published, which includes friction with “belt-reversals”",
+        "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator on a reversing floor "
+        "in closed form; rocking and sliding together have criteria of initiation (Shenton 1996), not more.",
+    ),
+    (
+        "4.3",
+        "values are given for steel on concrete ... big differences result from higher displacement rates",
+        "A matter of tests on materials.",
+    ),
+    (
+        "6",
+        "the tuning of the driving frequency can be difficult",
+        "A remark on method; `python -m fem response` follows a frequency up and down.",
+    ),
+)
+
+
+def all_claims() -> list[Claim]:
+    """All checked claims, in the order of the page."""
+    return [claim for claims in TOPICS.values() for claim in claims]
+
+
 STUDY, PAGE, FIGURES = "seed", "study.html", "figures"
 #: size of page, document and figures of all claims, twice while the page is written [bytes]
 ROOM = 1e7
 OF_A_CLAIM_S = 3.3  #: processor time, on average [s]
 
-SOURCES = (
-    "evidence",
-    "paper",
-    "rigs",
-    "verification",
-)  #: folders of the tests that decide, besides the program
+#: folders of the tests that decide, besides the program
+SOURCES = ("evidence", "paper", "rigs", "verification")
 Entries = dict[str, dict[str, Any]]  #: of `study.json`, by the name of the claim
 
 
@@ -121,14 +167,10 @@ def check_claims(
     force: bool = False,
     report: Callable[[str], None] = lambda text: None,
 ) -> dict[str, Any]:
-    """Check claims into a folder; returns the content of `study.json`.
+    """Check claims, or all, into a folder; returns the content of `study.json`.
 
-    Args:
-        folder: made if it is missing; must hold claims checked earlier, or nothing.
-        experiments: computes the runs.
-        claims: all by default.
-        force: check those again that are decided, and overwrite what the folder holds.
-        report: called with a line before each claim is checked.
+    The folder is made if it is missing, and must hold claims checked earlier, or nothing. With `force` decided ones are
+    checked again, and what the folder holds is overwritten. `report` is told each claim before it is checked.
     """
     began = time.perf_counter()
     way_on = "the same command continues"
@@ -202,16 +244,11 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
 def _decided_by() -> dict[str, Any]:
     """Program, libraries and checks: a claim that the same have decided is not checked again."""
     program = program_of_results()
-    return program | {"program": _with_the_checks(program["program"])}
-
-
-@cache
-def _with_the_checks(program: str) -> str:
-    digest = hashlib.sha256(program.encode())
+    digest = hashlib.sha256(program["program"].encode())
     for folder in SOURCES:
         for source in sorted((Path(__file__).parents[1] / folder).rglob("*.py")):
             digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+    return program | {"program": digest.hexdigest()[:16]}
 
 
 def _checked(claim: Claim, experiments: Experiments, results: ResultFolder) -> dict[str, Any]:

@@ -7,11 +7,11 @@ from evidence.findings import at_most, equal
 from first_swing import first_swing_threshold
 from floors import sine_floor
 from paper.cases import PLATEAU, RIGID, SHELL, STACK, PaperCase
-from paper.claims import Evidence, claim, outcomes, table
+from paper.claims import Curve, Evidence, claim, draw_curves, outcomes, table
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, HEIGHT, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments
-from paper.figures import Curve, draw_curves
 
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import load_case
@@ -34,6 +34,11 @@ def inertia_ratio(*, cylinder: bool, hollow: bool = False, height: float = HEIGH
     return 1.0 + own / (0.25 * (WIDTH**2 + height**2))
 
 
+def _floor(peak: float) -> FloorAcceleration:
+    """That of the paper, of a peak acceleration [m/s2]."""
+    return sine_floor(amplitude=peak / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY)
+
+
 @claim(
     "3",
     "Thus, the findings do also hold for a vertical cylindrical body instead of a prism",
@@ -46,22 +51,15 @@ def cylinder(experiments: Experiments) -> Evidence:
         "cylinder": inertia_ratio(cylinder=True),
         "cylinder, all mass in its wall": inertia_ratio(cylinder=True, hollow=True),
     }
-    rows, plateau = [], PLATEAU_PEAK / ANGULAR_FREQUENCY**2
+    rows = []
     for name, ratio in ratios.items():
         body = RigidBlock(
             half_width=HALF_WIDTH, centroid_height=0.5 * HEIGHT, gravity=GRAVITY, inertia_ratio=ratio
         )
-        floor = sine_floor(amplitude=plateau, angular_frequency=ANGULAR_FREQUENCY)
-        largest = simulate_rocking(body, floor, duration=3.0).largest_rotation / body.slenderness_angle
+        largest = simulate_rocking(body, _floor(PLATEAU_PEAK), duration=3.0).largest_rotation
+        largest /= body.slenderness_angle
         first_swing = first_swing_threshold(
-            body,
-            lambda peak: sine_floor(
-                amplitude=peak / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY
-            ),
-            low=3.0,
-            high=60.0,
-            duration=4.0,
-            relative_tolerance=1e-3,
+            body, _floor, low=3.0, high=60.0, duration=4.0, relative_tolerance=1e-3
         )
         p, e = body.frequency_parameter, body.housner_restitution
         rows.append((name, ratio, p, e, body.uplift_acceleration, largest, first_swing))

@@ -7,10 +7,9 @@ import numpy as np
 from evidence.findings import at_most
 from floors import sine_floor
 from paper.cases import BOX, FOR_MAPS, PLATEAU, RIGID, STACK, friction
-from paper.claims import Evidence, claim, table
+from paper.claims import Curve, Evidence, claim, draw_curves, table
 from paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HEIGHT, HOLDING, PAPER_MU, WIDTH
 from paper.experiments import Experiments, capped_ratio, stands
-from paper.figures import Curve, draw_curves
 from paper.maps import MapCell, pairs, stack_map
 from rigid_slider import RigidSlider, simulate_sliding
 

@@ -13,8 +13,7 @@ from paper.cases import STACK, PaperCase
 from paper.claims import Claim, ClaimFigure, ClaimResult, Conclusion, conclude
 from paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
 from paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
-from paper.index import all_claims
-from paper.run import check_claims, paper_report
+from paper.run import all_claims, check_claims, paper_report
 
 from fem.__main__ import main
 from fem.case.case import load_case
@@ -58,11 +57,11 @@ def band_of(*holds):
 
 def test_a_band_counts_how_often_the_criterion_holds_and_leaves_failed_runs_out():
     band = band_of(None, True, False)
-    assert (band.low, band.high, band.holding) == (1.0, 2.0, 1)
+    assert (*band.ends, band.holding) == (1.0, 2.0, 1)
     assert band.summary == "holds in 1 of 3, 1 not computed: it depends on deformation, contact or support"
     assert band_of(True, True).summary.endswith("do not change it")
     assert band_of(False, False).summary.endswith("it holds in none of them")
-    assert math.isnan(band_of(None).low)
+    assert math.isnan(band_of(None).ends[0])
 
 
 def test_a_band_says_where_the_regime_rests_on_chance():
@@ -102,13 +101,8 @@ def test_a_contingency_counts_each_cell_once():
 def test_the_papers_criteria_say_of_known_motions_what_they_must(
     peak, angular_frequency, slenderness, mu, tilts, overturns, mode
 ):
-    motion = MapMotion(
-        angular_frequency=angular_frequency,
-        peak=peak,
-        slenderness=slenderness,
-        mu_static=mu[0],
-        mu_kinetic=mu[1],
-    )
+    friction = {"mu_static": mu[0], "mu_kinetic": mu[1]}
+    motion = MapMotion(angular_frequency=angular_frequency, peak=peak, slenderness=slenderness, **friction)
     assert (static_rule(motion), paper_rule(motion), predicted_mode(motion)) == (tilts, overturns, mode)
 
 
@@ -125,10 +119,8 @@ def test_cells_beside_a_change_of_outcome_or_close_to_falling_are_perturbed():
 
 
 def result(*comparisons):
-    figure = ClaimFigure(name="a-figure", caption="c", svg="<svg></svg>")
-    return ClaimResult(
-        comparisons=comparisons, reading="as read", figures=[figure], cases=[PaperCase(base="seed_box")]
-    )
+    figure, case = ClaimFigure(name="a-figure", caption="c", svg="<svg></svg>"), PaperCase(base="seed_box")
+    return ClaimResult(comparisons=comparisons, reading="as read", figures=[figure], cases=[case])
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 from paper import example, quasi_static, rocking, shape, stacking
 from paper.claims import Conclusion
 from paper.experiments import Experiments
-from paper.index import all_claims
+from paper.run import all_claims
 
 
 @pytest.fixture(scope="module")

@@ -167,19 +167,11 @@ def rig(
     amplitudes: FloatArray | float = 0.0,
     rates: FloatArray | float = 0.0,
 ) -> Rig:
-    """Put a block on its floor at t = 0, where it moves with the floor.
+    """Put a block on its floor at t = 0, where it moves with the floor along x and upward; settled, if not in a stance.
 
-    Args:
-        block: with its floor.
-        motion: of the floor along x; vertical: upward.
-        stance: the initial one; None: settled.
-        scheme: of time stepping.
-        largest_step: [s]; fixed_step: every step has this size, whatever its energy error.
-        energy_scale: of the tolerances of the energy error.
-        sampled: interval of the history [s], which has room for 8000 samples.
-        breaks: instants at which a step must end [s].
-        shape, frequencies, damping_ratios: of elastic modes, see `make_modal_body`.
-        amplitudes, rates: (m,) initial modal amplitudes and their rates.
+    With `fixed_step` every step has the largest size [s], whatever its energy error, whose tolerances `energy_scale`
+    multiplies. The history has room for 8000 samples, one every `sampled` [s]. A step must end at `breaks` [s].
+    Elastic modes as in `make_modal_body`, with initial amplitudes and rates (m,).
     """
     body = make_modal_body(
         mass=block.mass,

@@ -33,14 +33,10 @@ def next_turning_point(
     rotation: float,
     duration: float,
 ) -> float:
-    """|rotation| at the turning point after the first impact [rad].
+    """|rotation| at the turning point after the first impact [rad], the block released at rest just above its springs.
 
-    Args:
-        places: of the springs along the base from its centre, (n,) [m].
-        stiffness: of all springs together over the mass [1/s2].
-        relaxation_time: dashpot over spring [s].
-        rotation: from which the block is released at rest, its corner just above the springs [rad].
-        duration: until after that turning point [s].
+    `places`: of the springs along the base from its centre, (n,) [m]; `stiffness`: of all together over the mass
+    [1/s2]; `relaxation_time`: dashpot over spring [s]; `duration`: until after that turning point [s].
     """
     below, spring = block.centroid_height, stiffness / places.size
     inertia = (block.inertia_ratio - 1.0) * block.radius**2
@@ -80,20 +76,12 @@ def largest_corner_force(
 ) -> float:
     """Largest mean force on a corner over a window that slides with the time [N].
 
-    The block stands on two corners, each a spring with a dashpot that never pulls, and a like one along x that slides
-    at `friction` times the force. Explicit steps of one size, no step control.
-
-    Args:
-        mass: [kg]; stiffness: of the spring of one corner [N/m]; relaxation_time: dashpot over spring [s].
-        window: [s].
-        rotation: from which the block is released at rest, its corner as deep as it carries the weight [rad].
-        duration: [s]; step: [s].
+    The block stands on two corners, each a spring [N/m] with a dashpot, given over the spring [s], that never pulls,
+    and a like one along x that slides at `friction` times the force. It is released at rest, its corner as deep as it
+    carries the weight. Explicit steps of one size, no step control.
     """
-    below, half, inertia = (
-        block.centroid_height,
-        block.half_width,
-        (block.inertia_ratio - 1.0) * block.radius**2 * mass,
-    )
+    below, half = block.centroid_height, block.half_width
+    inertia = (block.inertia_ratio - 1.0) * block.radius**2 * mass
     x, turned, vx, vz, spin = 0.0, rotation, 0.0, 0.0, 0.0
     z = half * math.sin(abs(turned)) + below * math.cos(turned) - mass * block.gravity / stiffness
     anchors: list[float | None] = [None, None]

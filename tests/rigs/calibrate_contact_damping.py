@@ -21,7 +21,7 @@ from pathlib import Path
 from runs import RunFailedError, finish
 
 from contact.interface.penalty import contact_frequency
-from fem.case.case import Case, read_case
+from fem.case.case import Case, case_from
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
 
@@ -35,24 +35,15 @@ STIFFEST = 1e13  #: largest Young's modulus of a case [Pa]
 STIFFER = 3.0  #: penalty of the sensitivity column over the default
 TARGET = Path(__file__).parents[2] / "fem" / "model" / "data" / "contact_damping_restitution.csv"
 
-CASE = read_case("""
-schema = 1
-title = "calibration"
-[container]
-width_m = 1.1
-height_m = 1.1
-density_kg_m3 = 2066.0
-section = "solid"
-[contact]
-mu_static = 2.0
-[motion]
-kind = "none"
-[solver]
-step_s = 1e-4
-[output]
-history_s = 0.1
-fields_s = 0.0
-""")
+CASE = case_from(
+    {
+        "container": {"width_m": 1.1, "height_m": 1.1, "density_kg_m3": 2066.0, "section": "solid"},
+        "contact": {"mu_static": 2.0},
+        "motion": {"kind": "none"},
+        "solver": {"step_s": 1e-4},
+        "output": {"history_s": 0.1, "fields_s": 0.0},
+    }
+)
 HEADER = """\
 # Apparent restitution of homogeneous blocks, by contact damping ratio c/(2 sqrt(k m)), support and slenderness.
 # Made by tests/rigs/calibrate_contact_damping.py; all values computed by this program (no measurement).
@@ -91,23 +82,20 @@ def measured(case: Case, container: Container, damping_ratio: float, stiffer: fl
     return f"{value:.4f}" if math.isfinite(value) else ""
 
 
-def stiff_solid(kind: str, foot: float, slenderness: float) -> tuple[Case, Container, float]:
-    """The elastic block, stiff enough that f1/f_c is STIFFNESS_RATIO if possible; and its f1/f_c."""
+def rows_of(kind: str, foot: float, slenderness: float) -> list[dict[str, str]]:
+    """Rows of one support and slenderness, over the damping ratios.
+
+    The elastic block is so stiff that f1/f_c is STIFFNESS_RATIO if possible.
+    """
+    rigid_case = case_of(kind, foot, slenderness, "rigid")
+    rigid = discretise(rigid_case)
     case = case_of(kind, foot, slenderness, "reduced")
-    model = build_model(case)
-    given = case.container.youngs_modulus_Pa
+    model, given = build_model(case), case.container.youngs_modulus_Pa
     ratio = model.spectra[0][0] / contact_frequency(model.container.mesh.mass, model.base_stiffness)
     modulus = min(given * (STIFFNESS_RATIO / ratio) ** 2, STIFFEST)
     chosen = {"container.youngs_modulus_Pa": modulus, "contact.normal_penalty_Pa_m": model.penalty}
-    case = case.with_values(chosen)
-    return case, discretise(case), ratio * math.sqrt(modulus / given)
-
-
-def rows_of(kind: str, foot: float, slenderness: float) -> list[dict[str, str]]:
-    """Rows of one support and slenderness, over the damping ratios."""
-    rigid_case = case_of(kind, foot, slenderness, "rigid")
-    rigid = discretise(rigid_case)
-    solid_case, solid, ratio = stiff_solid(kind, foot, slenderness)
+    solid_case = case.with_values(chosen)
+    solid, ratio = discretise(solid_case), ratio * math.sqrt(modulus / given)
     housner = build_model(rigid_case, rigid).static.housner_restitution
     return [
         {

@@ -148,12 +148,7 @@ def symmetric_orbit_slender(
     Spanos and Koh, J. Engng Mech. ASCE 110 (1984): the linear equation phi'' = phi - 1 + a sin(w tau + psi)
     over one half period, phi = 0 at both ends, velocity -v/e at the end after v at the start. That leaves
     a quadratic for sin psi; of two orbits the one with the larger speed is given. Stability is not
-    examined here.
-
-    Args:
-        acceleration_ratio: A Omega^2/(g al) [-].
-        frequency_ratio: w = Omega/p [-].
-        restitution: e, above 0 and below 1 [-].
+    examined here. 0 < e < 1.
     """
     w = frequency_ratio
     half = math.pi / w
@@ -178,10 +173,7 @@ def damped_drop_restitution(damping_ratio: float) -> float:
     Contact ends where k x + c v = 0, not where the spring is straight again:
     e = exp(-2 zeta arccos(zeta)/sqrt(1 - zeta^2)), the same as exp(-zeta/s (pi - atan2(2 zeta s, 1 - 2 zeta^2))),
     s = sqrt(1 - zeta^2): Schwager and Poschel, Granular Matter 9 (2007). Gravity is neglected: approach speed far
-    above g sqrt(m/k).
-
-    Args:
-        damping_ratio: zeta = c/(2 sqrt(k m)) with the whole bed's k and c, below 1 [-].
+    above g sqrt(m/k). zeta = c/(2 sqrt(k m)) < 1, with the whole bed's k and c.
     """
     return math.exp(-2.0 * damping_ratio * math.acos(damping_ratio) / math.sqrt(1.0 - damping_ratio**2))
 

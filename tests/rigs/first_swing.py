@@ -23,12 +23,8 @@ def first_swing_threshold(
     """Peak floor acceleration from which the block overturns before any impact [m/s2].
 
     Bisection on the exact motion of the first swing only, where overturning is monotone in the peak of the
-    motions considered here; with impacts there are safe islands above it and no single threshold.
-
-    Args:
-        floor_of_peak: the motion for a given peak acceleration [m/s2].
-        low, high: peaks that do not, and do, overturn in the first swing [m/s2].
-        duration: long enough to overturn or to come back [s].
+    motions considered here; with impacts there are safe islands above it and no single threshold. The peaks `low` and
+    `high` [m/s2] do not, and do, overturn; the duration [s] must do to overturn or to come back.
     """
 
     def overturns(peak: float) -> bool:

@@ -12,13 +12,7 @@ def still_floor() -> FloorAcceleration:
 
 
 def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0) -> FloorAcceleration:
-    """Acceleration of a floor at x = A sin(Omega t + phase): -A Omega^2 sin(Omega t + phase).
-
-    Args:
-        amplitude: A [m].
-        angular_frequency: Omega [rad/s].
-        phase: [rad].
-    """
+    """Acceleration of a floor at x = A sin(Omega t + phase), in m, rad/s, rad: -A Omega^2 sin(Omega t + phase)."""
     peak = amplitude * angular_frequency**2
     return FloorAcceleration(
         function=lambda time: -peak * math.sin(angular_frequency * time + phase),
@@ -28,31 +22,21 @@ def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0
 
 def rectangular_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
     """Constant acceleration `peak` [m/s2] for `duration` [s] from `delay` [s] on, zero before and after."""
-    return _pulse(lambda share: peak, duration=duration, delay=delay, longest_step=math.inf)
+    return _pulse(lambda share: peak, duration, delay, math.inf)
 
 
 def half_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
     """peak x sin(pi t/duration) for half a period, zero before and after [m/s2]."""
-    return _pulse(
-        lambda share: peak * math.sin(math.pi * share),
-        duration=duration,
-        delay=delay,
-        longest_step=0.25 * duration,
-    )
+    return _pulse(lambda share: peak * math.sin(math.pi * share), duration, delay, 0.25 * duration)
 
 
 def one_sine_pulse(*, peak: float, duration: float) -> FloorAcceleration:
     """peak x sin(2 pi t/duration) for one period, zero before and after [m/s2]."""
-    return _pulse(
-        lambda share: peak * math.sin(2.0 * math.pi * share),
-        duration=duration,
-        delay=0.0,
-        longest_step=0.125 * duration,
-    )
+    return _pulse(lambda share: peak * math.sin(2.0 * math.pi * share), duration, 0.0, 0.125 * duration)
 
 
 def _pulse(
-    shape: Callable[[float], float], *, duration: float, delay: float, longest_step: float
+    shape: Callable[[float], float], duration: float, delay: float, longest_step: float
 ) -> FloorAcceleration:
     end = delay + duration
 

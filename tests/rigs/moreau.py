@@ -13,6 +13,7 @@ rigid batch is measured against.
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -39,12 +40,9 @@ class Boxes:
     def homogeneous(cls, widths: FloatArray, heights: FloatArray, masses: FloatArray) -> "Boxes":
         """Homogeneous rectangles."""
         width, height, mass = (np.array(one, dtype=float) for one in (widths, heights, masses))
+        inertia = mass * (width**2 + height**2) / 12.0
         return cls(
-            half_width=0.5 * width,
-            height=height,
-            mass=mass,
-            centroid_height=0.5 * height,
-            inertia=mass * (width**2 + height**2) / 12.0,
+            half_width=0.5 * width, height=height, mass=mass, centroid_height=0.5 * height, inertia=inertia
         )
 
     @property
@@ -54,8 +52,7 @@ class Boxes:
         return np.stack([0.0 * bottom, bottom + self.centroid_height, 0.0 * bottom], axis=1)
 
 
-@dataclass(frozen=True, kw_only=True)
-class BoxMotion:
+class BoxMotion(NamedTuple):
     """What boxes did; slip is that of a box over what is below, positive along +x."""
 
     times: FloatArray  #: of the samples [s]
@@ -96,18 +93,10 @@ def move_boxes(
     size = np.stack(
         [boxes.half_width, boxes.height, boxes.centroid_height, boxes.mass, boxes.inertia], axis=1
     )
-    fell_at, fell_box = _advance(
+    fell = _advance(
         size, static, kinetic, gravity, np.asarray(along, float), step, every, q, v, places, slips, most
     )
-    return BoxMotion(
-        times=step * every * np.arange(samples),
-        place=places,
-        slip=slips,
-        max_rotation=most[:, 0],
-        max_slip=most[:, 1],
-        fell_at=fell_at,
-        fell_box=fell_box,
-    )
+    return BoxMotion(step * every * np.arange(samples), places, slips, *most.T, *fell)
 
 
 @numba.njit(cache=True)

@@ -8,11 +8,12 @@ Den Hartog, Trans. ASME APM-53-9 (1931); Westermo and Udwadia, Earthquake Engng 
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.reference.event_driven import MAX_EVENTS, EventError, Guard, Piece, Rate, flow, sample
+from contact.reference.event_driven import MAX_EVENTS, EventError, Guard, Piece, flow, sample
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 
 
@@ -25,8 +26,7 @@ class RigidSlider:
     gravity: float  #: [m/s2]
 
 
-@dataclass(frozen=True, kw_only=True)
-class SlipInterval:
+class SlipInterval(NamedTuple):
     """An interval in which the body sticks, or slides in one direction."""
 
     start: float  #: [s]
@@ -64,12 +64,9 @@ class SlidingMotion:
 def simulate_sliding(
     slider: RigidSlider, floor: FloorAcceleration, *, duration: float, slip_velocity: float = 0.0
 ) -> SlidingMotion:
-    """Integrate the motion of a slider that starts at slip 0 with the given slip velocity.
+    """Integrate the motion of a slider that starts at slip 0.
 
-    Args:
-        duration: [s].
-        slip_velocity: body minus floor at the start [m/s]; a body at rest on a floor that starts with
-            velocity v has -v.
+    `slip_velocity`: body minus floor at the start [m/s]; a body at rest on a floor that starts with velocity v has -v.
     """
     pieces: list[Piece] = []
     intervals: list[SlipInterval] = []
@@ -77,8 +74,13 @@ def simulate_sliding(
     time, state = 0.0, np.array([0.0, slip_velocity])
     direction = int(np.sign(slip_velocity))
     for _ in range(MAX_EVENTS):
+
+        def slides(state: FloatArray, acceleration: Acceleration, way: int = direction) -> FloatArray:
+            friction = -way * slider.mu_kinetic * (slider.gravity + acceleration.z)
+            return np.array([state[1], friction - acceleration.x])
+
         passage = flow(
-            rate=_rate(slider, direction) if direction else None,
+            rate=slides if direction else None,
             guards=_guards(slider, direction),
             state=state,
             start=time,
@@ -89,7 +91,7 @@ def simulate_sliding(
         )
         pieces.extend(passage.pieces)
         if passage.time > time:
-            intervals.append(SlipInterval(start=time, end=passage.time, direction=direction))
+            intervals.append(SlipInterval(time, passage.time, direction))
         time, state = passage.time, passage.state
         if passage.event in (None, "leaves the floor"):
             break
@@ -101,14 +103,6 @@ def simulate_sliding(
     else:
         raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} changes between sticking and sliding")
     return SlidingMotion(intervals=tuple(intervals), end=time, pieces=tuple(pieces))
-
-
-def _rate(slider: RigidSlider, direction: int) -> Rate:
-    def rate(state: FloatArray, acceleration: Acceleration) -> FloatArray:
-        friction = -direction * slider.mu_kinetic * (slider.gravity + acceleration.z)
-        return np.array([state[1], friction - acceleration.x])
-
-    return rate
 
 
 def _guards(slider: RigidSlider, direction: int) -> tuple[Guard, ...]:

@@ -15,12 +15,5 @@ SLIP = 0.1  #: the clearance [m]
 
 
 def k1(*, mu_static: float = 0.4, mu_kinetic: float = 0.2) -> LooseBody:
-    return LooseBody(
-        block=RigidBlock.homogeneous(width=1.1, height=4.0),
-        width=1.1,
-        height=4.0,
-        depth=1.1,
-        mass=10_000.0,
-        mu_static=mu_static,
-        mu_kinetic=mu_kinetic,
-    )
+    block, size = RigidBlock.homogeneous(width=1.1, height=4.0), {"width": 1.1, "height": 4.0, "depth": 1.1}
+    return LooseBody(block=block, **size, mass=10_000.0, mu_static=mu_static, mu_kinetic=mu_kinetic)

@@ -16,7 +16,7 @@ from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping import modal_body
 from contact.stepping.modal_body import ModalBody
-from fem.case.case import Case, read_case
+from fem.case.case import Case, case_from
 from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.results.history import History
@@ -30,28 +30,15 @@ GRAVITY = 9.81
 Keys = dict[str, Any]  #: dotted keys of a case and their values
 
 #: The homogeneous stack: 1.1 x 4.0 m, 10 t, on two corners; rigid, no fields.
-STACK = read_case(
-    """
-    schema = 1
-    gravity_m_s2 = 9.81
-    [container]
-    width_m = 1.1
-    height_m = 4.0
-    depth_m = 1.1
-    weight_N = 98100.0
-    [contact]
-    mu_static = 1.0
-    [motion]
-    kind = "none"
-    [solver]
-    model = "rigid"
-    order = 1
-    element_size_m = 1.0
-    [output]
-    history_s = 0.005
-    fields_s = 0.0
-    """,
-    name="stack",
+STACK = case_from(
+    {
+        "gravity_m_s2": GRAVITY,
+        "container": {"width_m": 1.1, "height_m": 4.0, "depth_m": 1.1, "weight_N": 98100.0},
+        "contact": {"mu_static": 1.0},
+        "motion": {"kind": "none"},
+        "solver": {"model": "rigid", "order": 1, "element_size_m": 1.0},
+        "output": {"history_s": 0.005, "fields_s": 0.0},
+    }
 )
 SLENDERNESS = math.atan2(1.1, 4.0)  #: of the stack [rad]
 TILTED: Keys = {"initial.rotation_rad": 0.5 * SLENDERNESS}
@@ -95,6 +82,11 @@ class Finished:
     model: Model
     history: History
     status: str  #: completed | overturned
+
+    @property
+    def times(self) -> FloatArray:
+        """Of the samples [s]."""
+        return self.history["time_s"]
 
     @property
     def track(self) -> Any:
@@ -194,18 +186,9 @@ def _modal(model: Model) -> ModalBody:
 
 
 #: four boxes on coarse meshes, so that the full model stays affordable: the models are compared on one mesh
+BOXES: Keys = {"container.height_m": 1.0, "container.boxes": 4, "container.weight_N": 24525.0}
 FOUR = STACK.with_values(
-    {
-        "container.height_m": 1.0,
-        "container.boxes": 4,
-        "container.weight_N": 24525.0,
-        "support.foot_m": 0.15,
-        "initial.rotation_rad": 0.5 * SLENDERNESS,
-        "solver.model": "reduced",
-        "solver.order": 2,
-        "solver.element_size_m": 0.55,
-        "solver.duration_s": 2.4,
-    }
+    SOLID | TILTED | BOXES | {"support.foot_m": 0.15, "solver.element_size_m": 0.55, "solver.duration_s": 2.4}
 )
 SECTIONS: dict[str, dict[str, Any]] = {
     "solid": {},
@@ -222,16 +205,6 @@ def stack(section: str = "solid", **changes: Any) -> Case:
     return FOUR.with_values(SECTIONS[section] | changed)
 
 
-def times(run: Finished) -> FloatArray:
-    """Of the samples [s]."""
-    return run.history["time_s"]
-
-
-def first_impact(run: Finished) -> float:
-    """[s]"""
-    return float(run.track.first_impact)
-
-
 def velocity_ratio(run: Finished) -> float:
     """Of the first impact, from the heights of the mass centre at the peaks around it (rigid kinematics)."""
     rotation, angle = run.history["rotation_rad"], run.model.static.slenderness_angle
@@ -246,4 +219,4 @@ def difference(one: Finished, other: Finished, *, until: float = math.inf) -> fl
     """Largest |difference| of rotation at common samples up to a time [s], over the slenderness angle."""
     count = min(len(one.history.modes), len(other.history.modes))
     apart = np.abs(one.history["rotation_rad"][:count] - other.history["rotation_rad"][:count])
-    return float(apart[times(one)[:count] < until].max()) / one.model.static.slenderness_angle
+    return float(apart[one.times[:count] < until].max()) / one.model.static.slenderness_angle

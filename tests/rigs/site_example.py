@@ -18,17 +18,8 @@ from fem.site.methods import site_methods
 from fem.site.result import MOTIONS, RESULT_FILE, SiteBody, SiteMotion, SiteResult, SiteRun
 
 STEP = 0.01
-RUN = SiteRun(
-    motion=1,
-    vertical_sign=1,
-    mu_static=0.4,
-    mu_kinetic=0.2,
-    mass="full",
-    model="rigid",
-    outcome="rock",
-    rotation_ratio=0.1,
-    max_slip_m=0.01,
-)
+FOUND = {"outcome": "rock", "rotation_ratio": 0.1, "max_slip_m": 0.01}
+RUN = SiteRun(motion=1, vertical_sign=1, mu_static=0.4, mu_kinetic=0.2, mass="full", model="rigid", **FOUND)
 STORED = SiteResult.from_json(
     json.loads((Path(__file__).parent / "site_result.json").read_text(encoding="utf-8"))
 )
@@ -74,23 +65,14 @@ def example(
     """A result, and the files of its motions; so many runs overturn, and the set may fail its checks."""
     floor, periods = (STORED.floor, STORED.floor.building_periods_s) if building else (None, (None,))
     motions, bodies = STORED.set.motions, STORED.bodies
-    runs = [
-        replace(
-            RUN,
-            motion=motion,
-            vertical_sign=sign,
-            mu_static=mu,
-            mu_kinetic=share * mu,
-            mass=mass,
-            building_period_s=period,
-            outcome="slide" if mu == 0.2 else "rest",
-            rotation_ratio=0.002 * motion,
-            max_slip_m=0.003 * motion * (0.4 - mu) if mu == 0.2 else 1e-6,
-        )
-        for motion, sign, mu, share, mass, period in product(
-            range(1, 8), (1, -1), (0.2, 0.4), (0.5, 1.0), ("full", "empty"), periods
-        )
-    ]
+    runs = []
+    for motion, sign, mu, share, mass, period in product(
+        range(1, 8), (1, -1), (0.2, 0.4), (0.5, 1.0), ("full", "empty"), periods
+    ):
+        run = replace(RUN, motion=motion, vertical_sign=sign, mass=mass, building_period_s=period)
+        run = replace(run, mu_static=mu, mu_kinetic=share * mu, rotation_ratio=0.002 * motion)
+        slid = ("slide", 0.003 * motion * (0.4 - mu)) if mu == 0.2 else ("rest", 1e-6)
+        runs.append(replace(run, outcome=slid[0], max_slip_m=slid[1]))
     runs[:overturned] = [replace(run, outcome="overturned", rotation_ratio=2.0) for run in runs[:overturned]]
     found, fulfilled = STORED.set, overturned == 0 if valid else None
     if not valid:
@@ -112,16 +94,9 @@ def example(
         confirmed=tuple(replace(one, run=governing) for one in STORED.result.confirmed),
         actions=(replace(earthquake, answer=answer and ("fulfilled" if fulfilled else None)), wind),
     )
-    kept = tuple(runs) if valid else ()
-    methods = site_methods(
-        bodies=bodies,
-        inputs=INPUTS,
-        site=SITE,
-        motions=motions,
-        periods_s=STORED.action.periods_s,
-        floor=floor,
-        runs=kept,
-    )
+    kept, periods_s = tuple(runs) if valid else (), STORED.action.periods_s
+    given = {"motions": motions, "periods_s": periods_s, "floor": floor, "runs": kept}
+    methods = site_methods(bodies=bodies, inputs=INPUTS, site=SITE, **given)
     files = {name: text for number in range(1, 8) for name, text in site_motion(number)[1].items()}
     return replace(STORED, floor=floor, set=found, runs=kept, result=result, methods=methods), files
 

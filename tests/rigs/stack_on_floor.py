@@ -68,13 +68,9 @@ def stack_rig(
     sampled: float = 5e-3,
     elastic: tuple[FloatArray, FloatArray, float] | None = None,
 ) -> StackRig:
-    """Put boxes on one another and on a floor, settled; the floor's laws hold in the joints.
+    """Put boxes on one another, from the floor up, and on a floor, settled; the floor's laws hold in the joints.
 
-    Args:
-        boxes: from the floor up.
-        motion: of the floor along x.
-        mu: friction on the floor; joint_mu: in the joints, as on the floor if None.
-        elastic: mode shapes (4, 2, m), frequencies (m,) [rad/s] and damping ratio of every box.
+    `elastic`: mode shapes (4, 2, m), frequencies (m,) [rad/s] and damping ratio of every box.
     """
     n, points = len(boxes), 4 * len(boxes) - 2
     mass, height = sum(box.mass for box in boxes), sum(box.height for box in boxes)

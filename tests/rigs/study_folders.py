@@ -10,9 +10,7 @@ from fem.case.case import load_case, to_toml
 from fem.study.sweep_table import BAND, FOUND, WIDTH
 
 HERE = Path(__file__).parent
-FIGURE = (
-    '<svg xmlns="http://www.w3.org/2000/svg" width="100" height="50"><g><path d="M 0 0 L 9 9"/></g></svg>'
-)
+FIGURE = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><g><path d="M 0 0 L 9 9"/></g></svg>'
 
 
 def ensemble_folder(folder: Path, **more: object) -> Path:
@@ -46,27 +44,13 @@ def sweep_folder(folder: Path, outcomes: Sequence[str] = OUTCOMES, *, old: bool 
         {"key": SPEED, "values": [1.0, 4.5, 20.0], "scale": "list", "unit": "m/s2"},
         {"key": MU, "values": [0.2, 0.4], "scale": "list", "unit": ""},
     ]
-    info = {
-        "status": "completed",
-        "sweep": "boxes",
-        "title": "</script><b>",
-        "case": "seed_stack",
-        "model": "rigid",
-        "axes": axes,
-        "derived": {"contact.mu_kinetic": f"0.5 * {MU}"},
-        "cells": 6,
-        "rows": 6,
-        "held": "with mu_k = mu_s/2 falling at once",
-        "unsure": 2,
-        "sure": {"sure": 3, "regime unsure": 1, "unsure": 2},
-        "decided_by": {"contact.mu_kinetic": 1, "motion.start": 1},
-        "left_out": "pairs",
-        "perturbed": 2,
-        "copies": 7,
-        "maps": ["../outside.svg"],
-        "sweep_hash": "ab" * 32,
-        "versions": {"unanchored": "0.1.0"},
-    }
+    info = {"status": "completed", "sweep": "boxes", "title": "</script><b>", "case": "seed_stack"}
+    info |= {"model": "rigid", "axes": axes, "derived": {"contact.mu_kinetic": f"0.5 * {MU}"}}
+    info |= {"cells": 6, "rows": 6, "held": "with mu_k = mu_s/2 falling at once", "unsure": 2}
+    info |= {"sure": {"sure": 3, "regime unsure": 1, "unsure": 2}}
+    info |= {"decided_by": {"contact.mu_kinetic": 1, "motion.start": 1}, "left_out": "pairs"}
+    info |= {"perturbed": 2, "copies": 7, "maps": ["../outside.svg"]}
+    info |= {"sweep_hash": "ab" * 32, "versions": {"unanchored": "0.1.0"}}
     if old:
         info = {name: info[name] for name in info if name not in NEWER}
     (folder / "sweep.json").write_text(json.dumps(info))

@@ -91,10 +91,8 @@ def sheet(_: Case, case: Case) -> str:
     static = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
     lines = []
     for title, group in static_sheet(static, case):
-        lines += [
-            title,
-            *(f"  {one.name}: {one.numbers} = {one.result} {one.verdict or ''}" for one in group),
-        ]
+        rows = (f"  {one.name}: {one.numbers} = {one.result} {one.verdict or ''}" for one in group)
+        lines += [title, *rows]
     return "\n".join(lines)
 
 

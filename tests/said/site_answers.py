@@ -1,6 +1,6 @@
 """What is said of a site for what a line of a transcript makes: `repeated(), further(71)`, `box(still=112)`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -77,23 +77,14 @@ def answered(asked):
 
 def changed(floor=None, action=None, run=None, **answer):
     """The example with other findings; a floor by its differences from one in a building of ten storeys."""
-    tall = FloorResult(
-        z_over_h=0.5,
-        building="10 storeys",
-        building_periods_s=(2.0,),
-        damping_ratio=0.05,
-        peak_m_s2=1.9,
-        peak_velocity_m_s=0.5,
-        mean_m_s2=(),
-    )
+    tall = {"z_over_h": 0.5, "building": "10 storeys", "building_periods_s": (2.0,), "damping_ratio": 0.05}
+    tall |= {"peak_m_s2": 1.9, "peak_velocity_m_s": 0.5, "mean_m_s2": ()}
     return replace(
         EXAMPLE,
         result=replace(EXAMPLE.result, **answer),
-        floor=None if floor is None else replace(tall, **floor),
+        floor=None if floor is None else FloorResult(**tall | floor),
         action=replace(EXAMPLE.action, **action or {}),
-        runs=tuple(replace(one, **run) for one in EXAMPLE.runs[:2]) + EXAMPLE.runs[2:]
-        if run
-        else EXAMPLE.runs,
+        runs=(*(replace(one, **run or {}) for one in EXAMPLE.runs[:2]), *EXAMPLE.runs[2:]),
     )
 
 
@@ -112,40 +103,22 @@ def brief_page(asked):
 
 
 #: a value that fulfils the rule, and one that does not
-STANDS = SiteAnswer(
-    answer="fulfilled",
-    fulfilled=True,
-    rule="",
-    sentence="",
-    overturned=0,
-    runs=28,
-    rotation_ratio=0.1,
-    slip_m=0.01,
-)
+WORDS = {"answer": "fulfilled", "fulfilled": True, "rule": "", "sentence": ""}
+STANDS = SiteAnswer(**WORDS, overturned=0, runs=28, rotation_ratio=0.1, slip_m=0.01)
 FELL = replace(
     STANDS, answer="not fulfilled", fulfilled=False, overturned=3, rotation_ratio=None, slip_m=None
 )
-WIDTH = SizeAxis(
-    key="container.width_m", words="width", unit="m", wanted="least", values=spaced(0.8, 2.0, 13)
-)
-STRENGTH = SizeAxis(
-    key="site.reference_acceleration_m_s2",
-    words="reference acceleration",
-    unit="m/s2",
-    wanted="largest",
-    values=spaced(0.2, 6.0, 15),
-)
-FRICTION = SizeAxis(
-    key="contact.mu_static", words="static friction", unit="", wanted="window", values=spaced(0.1, 0.8, 15)
-)
-BOXES = SizeAxis(
-    key="container.boxes",
-    words="number of boxes",
-    unit="",
-    wanted="largest",
-    values=tuple(map(float, range(1, 7))),
-    whole=True,
-)
+
+
+def axis_of(key: str, words: str, unit: str, wanted: str, values: Iterable[float], **more: bool) -> SizeAxis:
+    return SizeAxis(key=key, words=words, unit=unit, wanted=wanted, values=tuple(values), **more)
+
+
+WIDTH = axis_of("container.width_m", "width", "m", "least", spaced(0.8, 2.0, 13))
+AG = "site.reference_acceleration_m_s2"
+STRENGTH = axis_of(AG, "reference acceleration", "m/s2", "largest", spaced(0.2, 6.0, 15))
+FRICTION = axis_of("contact.mu_static", "static friction", "", "window", spaced(0.1, 0.8, 15))
+BOXES = axis_of("container.boxes", "number of boxes", "", "largest", map(float, range(1, 7)), whole=True)
 
 
 def size(axis: SizeAxis, fulfils: Callable[[float], bool]) -> SizeResult:

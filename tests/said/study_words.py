@@ -3,7 +3,6 @@
 An answer in a sentence; or why a list, a file, an axis, an expression or a request is refused.
 """
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -48,16 +47,10 @@ def line(axis, kinds, slip=None, unsure="", limit=None):
 def over(axis, *shares, slips=(), mu=None):
     """Points of an ensemble, whose intervals reach 0.1 to both sides."""
     for k, (value, share) in enumerate(zip(axis.values, shares, strict=True)):
-        point = {} if mu is None else {MU.key: mu}
-        middle = 0.5 if share is None else share
+        middle, region = 0.5 if share is None else share, "below" if share == 0.0 else "above"
         ends = {"low": max(middle - 0.1, 0.0), "high": min(middle + 0.1, 1.0)}
-        point |= {
-            axis.key: value,
-            "probability": share,
-            "region": "below" if share == 0.0 else "above",
-            **ends,
-        }
-        yield point | ({"max_slip_m": slips[k]} if slips else {})
+        point = ({} if mu is None else {MU.key: mu}) | {axis.key: value, "probability": share}
+        yield point | {"region": region, **ends} | ({"max_slip_m": slips[k]} if slips else {})
 
 
 def ensemble_of(*points, **more):
@@ -79,23 +72,12 @@ def draws(*points, **more):
 def point(frequency, direction, ratio, **changes):
     """A point of a response curve: rocking of period 1, or overturned."""
     fell = ratio is None
-    row = PointRow(
-        number=round(10 * frequency),
-        frequency_Hz=frequency,
-        amplitude_m=0.1,
-        peak_acceleration_m_s2=1.0,
-        began="random" if direction == "start" else "carried",
-        periods=1,
-        direction=direction,
-        rotation_ratio=ratio,
-        median_rotation_ratio=ratio,
-        slip_stroke_m=None if fell else 0.0,
-        motion=None if fell else "rock",
-        long_time=None if fell else "periodic",
-        period_n=1,
-        status="overturned" if fell else "completed",
-    )
-    return replace(row, **changes)
+    given = {"number": round(10 * frequency), "frequency_Hz": frequency, "amplitude_m": 0.1}
+    given |= {"peak_acceleration_m_s2": 1.0, "periods": 1, "period_n": 1, "direction": direction}
+    given |= {"began": "random" if direction == "start" else "carried"}
+    given |= {"rotation_ratio": ratio, "median_rotation_ratio": ratio, "slip_stroke_m": None if fell else 0.0}
+    given |= {"motion": None if fell else "rock", "long_time": None if fell else "periodic"}
+    return PointRow(**given | {"status": "overturned" if fell else "completed"} | changes)
 
 
 STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))

@@ -60,9 +60,7 @@ def refused(asked):
             load_case("case.toml")
         else:
             name, _, changes = asked.partition(" | ")
-            named_case(
-                name.strip(), dict(parse_override(change) for change in changes.split(" & ") if change)
-            )
+            named_case(name.strip(), dict(map(parse_override, filter(None, changes.split(" & ")))))
     except CaseError as error:
         return str(error)
     return "nothing is said against it"
@@ -76,18 +74,14 @@ def commanded(asked, capsys):
     if code == BAD_INPUT:
         assert (printed.out, sorted(Path().rglob("*"))) == ("", before)
         if asked.startswith("check ") and not re.search("python -m fem|a site file", printed.err):
-            assert (
-                main(["run", *shlex.split(asked)[1:]]) == BAD_INPUT
-            )  # what a run refuses, in the same words
-            assert capsys.readouterr().err == printed.err
+            again = main(["run", *shlex.split(asked)[1:]])  # what a run refuses, in the same words
+            assert (again, capsys.readouterr().err) == (BAD_INPUT, printed.err)
     said = printed.out + printed.err + (f"[{code}]" if code else "")
-    pages = [
-        Path(line) for line in printed.out.splitlines() if line.endswith(".html") and Path(line).is_file()
-    ]
+    lines = printed.out.splitlines()
+    pages = [Path(line) for line in lines if line.endswith(".html") and Path(line).is_file()]
     if asked.startswith("init ") and code == 0:
-        said += "".join(
-            path.read_text(encoding="utf-8") for path in Path().glob("*.toml") if path not in before
-        )
+        made = [path for path in Path().glob("*.toml") if path not in before]
+        said += "".join(path.read_text(encoding="utf-8") for path in made)
     return said + "\n".join(text_of_page(page.read_text(encoding="utf-8")) for page in pages)
 
 
@@ -131,11 +125,6 @@ def steady(said, folder):
     return said
 
 
-def asked_in(file):
-    """Each line that asks, and each remark."""
-    return [line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith(("$ ", "#"))]
-
-
 def transcript(pairs, *, differing):
     """The text of a file; where texts differ little, of all but the first of a kind only the lines that differ."""
     firsts, parts = {}, []
@@ -177,9 +166,9 @@ def test_the_program_says_what_it_said_when_that_was_last_read(name, request, tm
     say = (told_by | {"sentences": worded, "records": recorded, "cases": cased}).get(
         name, lambda asked: commanded(asked, capsys)
     )
-    pairs = [
-        (asked, "" if asked.startswith("#") else steady(say(asked[2:]), tmp_path)) for asked in asked_in(file)
-    ]
+    # each line that asks, and each remark
+    questions = [one for one in file.read_text(encoding="utf-8").splitlines() if one.startswith(("$ ", "#"))]
+    pairs = [(one, "" if one.startswith("#") else steady(say(one[2:]), tmp_path)) for one in questions]
     text = transcript(pairs, differing=name if name in ("results", "pages", "cases") else "")
     if request.config.getoption("--say"):
         file.write_text(text, encoding="utf-8")

@@ -48,12 +48,8 @@ def changed(asked):
 
 def judged_of(own, others):
     """The verdict of a run among others: `kind`, `values`, `share` and `place` of a change, and figures found."""
-    figures = {
-        "outcome": "slide-rock",
-        "rotation_ratio": 0.2,
-        "max_slip_m": 0.2,
-        "residual_slip_m": -0.2,
-    } | own
+    figures = {"outcome": "slide-rock", "rotation_ratio": 0.2, "max_slip_m": 0.2, "residual_slip_m": -0.2}
+    figures |= own
     changes, members = [], [ChangedRun.from_json({"status": "completed"} | figures)]
     for found in others:
         parts = {key: found.pop(key) for key in ("values", "kind", "share", "place") if key in found}

@@ -39,13 +39,10 @@ def rigid_case(
 
 
 def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int = 1) -> Container:
-    """The case's container with a given mass centre and moment of inertia, of three horizontal layers.
+    """The rigid container of a case, of three horizontal layers with shares of its mass, and so many elements across.
 
-    Args:
-        case: its width, height and mass; a rigid model.
-        centroid: height of the mass centre above the base [m].
-        inertia_ratio: moment of inertia about the mass centre over the mass [m2].
-        columns: elements across it.
+    `centroid`: height of the mass centre above the base [m]; `inertia_ratio`: moment of inertia about it over the mass
+    [m2].
     """
     width, height, mass = case.container.width_m, case.container.height_m, case.box_mass
     levels, layer = np.linspace(0.0, height, LAYERS + 1), height / LAYERS

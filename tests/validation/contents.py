@@ -7,7 +7,7 @@ itself depends on the motions, on friction and on what is in a cabinet.
 """
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from evidence.findings import prediction
@@ -32,8 +32,7 @@ DENSITY = 300.0  #: [kg/m3]; a rigid block falls alike whatever it weighs
 MOST_UNEVEN, MOST_APART = 1.3, 1.5
 
 
-@dataclass(frozen=True, kw_only=True)
-class Content:
+class Content(NamedTuple):
     """A body of the table."""
 
     name: str
@@ -51,13 +50,9 @@ class Content:
 
 def read_contents() -> tuple[Content, ...]:
     """The nine bodies."""
+    columns = ("width_m", "height_m", "median_m_s")
     return tuple(
-        Content(
-            name=row["contents"],
-            width=float(row["width_m"]),
-            height=float(row["height_m"]),
-            median=float(row["median_m_s"]),
-        )
+        Content(row["contents"], *(float(row[name]) for name in columns))
         for row in measured_table("contents.csv")
     )
 

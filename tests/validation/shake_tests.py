@@ -136,18 +136,9 @@ def _rocks(path: Path) -> Series:
                 acceleration=accelerations[number],
             )
         )
-    return _checked(
-        path,
-        Series(
-            title=ROCKS_TITLE,
-            source=ROCKS_SOURCE,
-            licence=ROCKS_LICENCE,
-            body=ROCK,
-            specimens=("rock 1", "rock 2"),
-            tests=tuple(tests),
-            own=False,
-        ),
-    )
+    words = {"title": ROCKS_TITLE, "source": ROCKS_SOURCE, "licence": ROCKS_LICENCE}
+    specimens = ("rock 1", "rock 2")
+    return _checked(path, Series(**words, body=ROCK, specimens=specimens, tests=tuple(tests), own=False))
 
 
 def _own(folder: Path) -> Series:
@@ -165,18 +156,9 @@ def _own(folder: Path) -> Series:
         raise ShakeTestError(f"{path}: its header needs the columns motion and overturned")
     tests = tuple(_own_test(path, number, row, specimens, unit) for number, row in enumerate(rows, start=2))
     titles = tuple(name.removeprefix("overturned").strip(" _") or "specimen" for name in specimens)
-    return _checked(
-        path,
-        Series(
-            title=f"Shake-table tests of {real_path(folder).name}",
-            source=str(path),
-            licence="the user's own",
-            body=body,
-            specimens=titles,
-            tests=tests,
-            own=True,
-        ),
-    )
+    words = {"title": f"Shake-table tests of {real_path(folder).name}", "source": str(path)}
+    words["licence"] = "the user's own"
+    return _checked(path, Series(**words, body=body, specimens=titles, tests=tests, own=True))
 
 
 def _own_test(

@@ -18,15 +18,10 @@ from fem.run.rigid_check import floor_of
 from fem.seismic.artificial import artificial_motions, artificial_set
 
 pytestmark = pytest.mark.slow
-CASE = case_from(
-    {
-        "container": {"width_m": 1.1, "height_m": 4.0, "mass_kg": 10_000.0},
-        "contact": {"mu_static": 0.4, "mu_kinetic": 0.2},
-        "motion": {"kind": "none"},
-        "solver": {"model": "rigid"},
-        "output": {"fields_s": 0.0},
-    }
-)
+BODY = {"width_m": 1.1, "height_m": 4.0, "mass_kg": 10_000.0}
+FRICTION, STILL = {"mu_static": 0.4, "mu_kinetic": 0.2}, {"kind": "none"}
+TABLES = {"container": BODY, "contact": FRICTION, "motion": STILL, "solver": {"model": "rigid"}}
+CASE = case_from(TABLES | {"output": {"fields_s": 0.0}})
 
 
 def on(motion, factor):

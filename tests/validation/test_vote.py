@@ -17,31 +17,15 @@ from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from mesh.errors import MeshError
 
-BLOCK = STACK.with_values(
-    {
-        "container.width_m": 0.1,
-        "container.height_m": 0.8,
-        "container.depth_m": 0.7,
-        "container.mass_kg": 350.0,
-        "solver.element_size_m": 0.3,
-    }
-)
+SIZES = {"container.width_m": 0.1, "container.height_m": 0.8, "container.depth_m": 0.7}
+BLOCK = STACK.with_values(SIZES | {"container.mass_kg": 350.0, "solver.element_size_m": 0.3})
 
 
 def experiment(name: str, *met: bool | None, not_computed: str = "") -> Experiment:
-    return Experiment(
-        name=name,
-        title=name,
-        source="a paper",
-        licence="none",
-        tests=3,
-        fitted="nothing",
-        findings=tuple(
-            prediction("side", 0.5, reference=1.0, criterion="" if one is None else "all", met=one)
-            for one in met
-        ),
-        not_computed=not_computed,
-    )
+    words = {"title": name, "source": "a paper", "licence": "none", "fitted": "nothing"}
+    side = partial(prediction, "side", 0.5, reference=1.0)
+    findings = tuple(side(criterion="" if one is None else "all", met=one) for one in met)
+    return Experiment(name=name, tests=3, findings=findings, not_computed=not_computed, **words)
 
 
 def test_the_sentence_names_what_is_missed_what_is_not_computed_and_what_tells_most():
@@ -93,10 +77,8 @@ def test_tests_of_one_record_are_not_in_the_fit_that_predicts_them():
     vote = Vote(falls={"all": falls}, overturned=np.array([1, 1, 0], dtype=bool), records=np.array([0, 0, 1]))
     every = np.ones(3, dtype=bool)
     found = vote.by_record(every, partial(vote.votes, "all"))
-    assert found[:2] == pytest.approx(
-        [0.5, 0.5]
-    )  # both blocks say the third; without the other of its record
-    assert found[2] == pytest.approx(0.0)
+    # both blocks say the third; without the other of its record
+    assert found == pytest.approx([0.5, 0.5, 0.0])
 
 
 def test_the_family_that_predicts_better_is_taken():

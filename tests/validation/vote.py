@@ -83,9 +83,7 @@ class Vote:
 def with_neighbours(blocks: Sequence[Block], falling: BoolArray) -> FloatArray:
     """What each block predicts, (blocks, tests): the mean of itself and its neighbours in angle, alike otherwise.
 
-    Args:
-        blocks: rising in angle among those that are alike otherwise.
-        falling: which overturn, (blocks, tests).
+    Of those that are alike otherwise the blocks rise in angle; which overturn is `falling`, (blocks, tests).
     """
     predictions = np.empty(falling.shape)
     alike: dict[Block, list[int]] = {}

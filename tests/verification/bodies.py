@@ -78,19 +78,12 @@ def free_run(
     speed: float = 0.0,
     ends: FloatArray | float = math.inf,
 ) -> Flight:
-    """Put a body into the stepper, every step of one size.
+    """Put a body into the stepper, every step of one size [s].
 
-    Args:
-        step: [s].
-        scheme: of time stepping.
-        velocity: of the nodes of a full body at t = 0, (n, 2) [m/s]; None: at rest.
-        modal_position: amplitude of a modal body's modes at t = 0.
-        height: above its place on the floor at t = 0 [m].
-        springs: (n,) contact springs, without damping and friction [N/m]; None: negligible ones.
-        caps: (n,) at which they crush the floor [N]; None: never.
-        growth: of these with the indentation, over the cap [1/m].
-        speed: upward velocity of a modal body at t = 0 [m/s].
-        ends: instants at which a step must end [s].
+    At t = 0 it is at a height above its place on the floor [m]; the nodes of a full body have velocities (n, 2) [m/s],
+    a modal body its modes' amplitude and an upward speed [m/s]. Contact springs (n,) [N/m], negligible if not given,
+    have neither damping nor friction; at caps (n,) [N] that grow with the indentation, over the cap [1/m], they crush
+    the floor. A step must end at `ends` [s].
     """
     if isinstance(body, FullBody):
         coordinates, points, (x, z) = body.coordinates, len(body.base), body.centroid

@@ -41,19 +41,11 @@ MOST_ATTEMPTS = 1_000_000  #: of steps, without a fault some thousands
 def landed(share: float, step: float, growth: float = 0.0) -> tuple[Flight, float, float]:
     """A rigid block that lands flat, without gravity and dashpot, its cap this share of the elastic peak force.
 
-    `growth` is that of the cap with the indentation, over the cap [1/m].
-
-    Returns:
-        The flight after it, the cap of both intact corners together [N], the exact indentation [m].
+    `growth` is that of the cap with the indentation, over the cap [1/m]. Found are the flight after it, the cap of both
+    intact corners together [N], and the exact indentation [m].
     """
-    body = make_modal_body(
-        mass=MASS,
-        inertia=MASS,
-        gravity=0.0,
-        point=np.array([[-0.5, -0.5], [0.5, -0.5]]),
-        rest=(0.0, 0.5),
-        tolerance=1e-9,
-    )
+    point = np.array([[-0.5, -0.5], [0.5, -0.5]])
+    body = make_modal_body(mass=MASS, inertia=MASS, gravity=0.0, point=point, rest=(0.0, 0.5), tolerance=1e-9)
     cap = share * SPEED * math.sqrt(SPRINGS * MASS)
     flight = free_run(
         body,
@@ -79,25 +71,22 @@ def landing() -> Findings:
     for share in (0.3, 0.6, 0.9):
         flight, cap, exact = landed(share, 5e-5)
         case = f"rigid block, cap {share:g} of the elastic force"
-        indentation, rebound = flight.state.crushed.max(), flight.state.velocity[1]
-        yield analytic(case, "indentation [m]", indentation, exact, source=source, relative=3e-4)
-        yield analytic(
-            case, "speed of the rebound [m/s]", rebound, share * SPEED, source=source, relative=3e-4
-        )
-        work = float(flight.run.ledger[CRUSHING])
-        yield analytic(case, "work of crushing [J]", work, cap * exact, source=source, relative=5e-4)
+        for compared, value, by_hand, within in (
+            ("indentation [m]", flight.state.crushed.max(), exact, 3e-4),
+            ("speed of the rebound [m/s]", flight.state.velocity[1], share * SPEED, 3e-4),
+            ("work of crushing [J]", flight.run.ledger[CRUSHING], cap * exact, 5e-4),
+        ):
+            yield analytic(case, compared, value, by_hand, source=source, relative=within)
     flight, cap, exact = landed(0.5, 2e-5, GROWTH)
     case, ended = f"rigid block, a cap that grows by {GROWTH:g}/m", cap * (1.0 + GROWTH * exact)
-    source = "m v^2/2 - F(w)^2/(2 k) = F (w + g w^2/2), F(w) = F (1 + g w), rebound F(w)/sqrt(k m)"
-    indentation, work = flight.state.crushed.max(), float(flight.run.ledger[CRUSHING])
-    yield analytic(case, "indentation [m]", indentation, exact, source=source, relative=2e-3)
-    rebound = ended / math.sqrt(SPRINGS * MASS)
-    yield analytic(
-        case, "speed of the rebound [m/s]", flight.state.velocity[1], rebound, source=source, relative=2e-3
-    )
-    exact = 0.5 * MASS * (SPEED**2 - rebound**2)
-    yield analytic(case, "work of crushing [J]", work, exact, source=source, relative=2e-3)
-    source = "m v^2/2 - F^2/(2 k) = F w, rebound F/sqrt(k m)"
+    rebound, speed = ended / math.sqrt(SPRINGS * MASS), flight.state.velocity[1]
+    law = "m v^2/2 - F(w)^2/(2 k) = F (w + g w^2/2), F(w) = F (1 + g w), rebound F(w)/sqrt(k m)"
+    for compared, value, by_hand in (
+        ("indentation [m]", flight.state.crushed.max(), exact),
+        ("speed of the rebound [m/s]", speed, rebound),
+        ("work of crushing [J]", flight.run.ledger[CRUSHING], 0.5 * MASS * (SPEED**2 - rebound**2)),
+    ):
+        yield analytic(case, compared, value, by_hand, source=law, relative=2e-3)
     errors = {}
     for step in (4e-4, 2e-4, 1e-4, 5e-5):
         # the error of one run depends on where in a step the crushing begins
@@ -150,9 +139,8 @@ def work_of_crushing() -> Findings:
         source = "area under the cap over the indentation"
         yield analytic(case, "work of crushing [J]", ledger[CRUSHING], at_cap, source=source, relative=2e-2)
         balance = abs(float(ledger[IMBALANCE])) / reference
-        yield analytic(
-            case, "imbalance over the energy to overturn", balance, source="energy closes", absolute=2e-3
-        )
+        compared = "imbalance over the energy to overturn"
+        yield analytic(case, compared, balance, source="energy closes", absolute=2e-3)
 
 
 @check("floor", "restitution of a corner that crushes", inputs=MESH)

@@ -159,10 +159,8 @@ def full_model() -> Findings:
     before = full.history["time_s"] < 0.69
     difference = full.history["rotation_rad"] - reduced.history["rotation_rad"]
     ratio, other = (float(done.track.restitution) for done in (full, reduced))
-    case, source = (
-        "stiff solid stack, full model, released at half its slenderness angle",
-        "reduced model, 20 modes",
-    )
+    case = "stiff solid stack, full model, released at half its slenderness angle"
+    source = "reduced model, 20 modes"
     impact = full.track.first_impact
     yield analytic(case, "first impact [s]", impact, 0.700737, source="quarter period, exact", relative=3e-3)
     compared = "velocity ratio at the first impact"
@@ -221,26 +219,18 @@ def friction_decides() -> Findings:
         changed = {"contact.mu_kinetic": 0.2, "contact.normal_penalty_Pa_m": factor * default}
         ratios[1.0 / factor] = float(run(STACK, motion | changed).track.max_rotation) / SLENDERNESS
     errors = {size: abs(value - exact) for size, value in ratios.items()}
-    yield computed(
-        "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.2",
-        "largest rotation in 20 s over the slenderness angle, at 3 x the default penalty",
-        ratios[1.0 / 3.0],
-        exact,
-        source=PLANAR_BLOCK,
-        relative=0.02,
-        convergence=Convergence("default penalty/penalty", errors, order=1.0, within=0.25),
-    )
+    case = "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.2"
+    compared = "largest rotation in 20 s over the slenderness angle, at 3 x the default penalty"
+    orders = Convergence("default penalty/penalty", errors, order=1.0, within=0.25)
+    both = ratios[1.0 / 3.0], exact
+    yield computed(case, compared, *both, source=PLANAR_BLOCK, relative=0.02, convergence=orders)
     gripping = PlanarBlock(body=body, mu_static=0.4, mu_kinetic=0.4)
     over = simulate_planar_block(gripping, floor, duration=20.0)
     done = run(STACK, motion)
-    yield computed(
-        "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.4",
-        "lies on its side at [s]",
-        done.history["time_s"][-1] if done.status == "overturned" else math.inf,
-        over.end if over.outcome is PlanarMode.OVERTURNED else math.nan,
-        source=PLANAR_BLOCK,
-        relative=0.01,
-    )
+    found = done.times[-1] if done.status == "overturned" else math.inf
+    falls = over.end if over.outcome is PlanarMode.OVERTURNED else math.nan
+    what = "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.4", "lies on its side at [s]"
+    yield computed(*what, found, falls, source=PLANAR_BLOCK, relative=0.01)
 
 
 @check("limits", "a start at rest", quick=False)
@@ -256,14 +246,10 @@ def start_at_rest() -> Findings:
         floor = sine_floor(amplitude=amplitude, angular_frequency=omega)
         exact = simulate_planar_block(block, floor, duration=20.0, slip_velocity=-amplitude * omega)
         different += (done.outcome == Outcome.OVERTURNED) != (exact.outcome is PlanarMode.OVERTURNED)
-    yield computed(
-        "rigid stack, 1.7 to 7 rad/s, 4.4 to 9.7 m/s2, mu 0.4/0.2, at rest at t = 0",
-        "runs of 25 in which it stands and the reference overturns, or the reverse",
-        different,
-        source=PLANAR_BLOCK,
-        absolute=1,
-        note="one may be so close to a change of outcome that the penalty decides",
-    )
+    case = "rigid stack, 1.7 to 7 rad/s, 4.4 to 9.7 m/s2, mu 0.4/0.2, at rest at t = 0"
+    compared = "runs of 25 in which it stands and the reference overturns, or the reverse"
+    note = "one may be so close to a change of outcome that the penalty decides"
+    yield computed(case, compared, different, source=PLANAR_BLOCK, absolute=1, note=note)
 
 
 @check("limits", "full model through an impact", quick=False, inputs=PROGRAM)

@@ -163,18 +163,10 @@ def first_motion(
     lam: float, ratio: float, mu_static: float, mu_kinetic: float, containers: dict[float, Container]
 ) -> str:
     """What a block of 1 m x lam m does at first under a floor acceleration of ratio x g."""
-    case = runs.STACK.with_values(
-        {
-            "container.width_m": 1.0,
-            "container.depth_m": 1.0,
-            "container.height_m": lam,
-            "container.weight_N": 20000.0 * lam,
-            "contact.mu_static": mu_static,
-            "contact.mu_kinetic": mu_kinetic,
-            "solver.duration_s": 0.15,
-            "output.history_s": 0.01,
-        }
-    )
+    keys: runs.Keys = {"container.width_m": 1.0, "container.depth_m": 1.0}
+    keys |= {"container.height_m": lam, "container.weight_N": 20000.0 * lam}
+    keys |= {"contact.mu_static": mu_static, "contact.mu_kinetic": mu_kinetic}
+    case = runs.STACK.with_values(keys | {"solver.duration_s": 0.15, "output.history_s": 0.01})
     if lam not in containers:
         containers[lam] = discretise(case)
     # at rest for 0.05 s, then an acceleration that grows for a while, or comes at once, and stays

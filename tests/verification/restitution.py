@@ -120,13 +120,12 @@ def tolerances_and_steps() -> Findings:
             for tolerance, step in itertools.product((0.01, 1.0, 10.0), (1e-4, 1e-2))
         )
         ratios = [peaks(released(block(STACKED, keys | setting))) for setting in settings]
-        yield analytic(
+        case, compared = (
             f"rigid stack on {kind}, tolerance 0.01 to 10, steps of 0.1 to 10 ms",
             f"{COMPARED}, largest minus least",
-            max(ratios) - min(ratios),
-            source="a property of the support",
-            absolute=1e-3,
         )
+        spread, source = max(ratios) - min(ratios), "a property of the support"
+        yield analytic(case, compared, spread, source=source, absolute=1e-3)
 
 
 @check("restitution", "a stated restitution")
@@ -137,14 +136,10 @@ def stated() -> Findings:
         for ratio, share in itertools.product(ratios, (0.5, 0.2, 0.07)):
             start = {"initial.rotation_rad": share * math.atan(1.0 / lam)}
             done = released(block(lam, start | {"contact.restitution_over_housner": ratio}))
-            yield analytic(
-                f"rigid block, c/a = {lam:.3g}, released from {share:g} of the slenderness angle",
-                f"{COMPARED}, {ratio:g} of Housner's asked for",
-                peaks(done),
-                ratio * (1.0 - 1.5 / (1.0 + lam**2)),
-                source="as asked for in the case",
-                absolute=RIGID_TOLERANCE,
-            )
+            case = f"rigid block, c/a = {lam:.3g}, released from {share:g} of the slenderness angle"
+            compared, source = f"{COMPARED}, {ratio:g} of Housner's asked for", "as asked for in the case"
+            exact = ratio * (1.0 - 1.5 / (1.0 + lam**2))
+            yield analytic(case, compared, peaks(done), exact, source=source, absolute=RIGID_TOLERANCE)
 
 
 @check("restitution", "a stated restitution under a pulse", inputs=MESH)
@@ -156,20 +151,16 @@ def stated_under_a_pulse() -> Findings:
         keys = pulse(peak, 1.0, "sine") | {"contact.mu_static": 3.0, "solver.duration_s": 6.0} | floor
         done = run(STACK.with_values(keys | {"contact.restitution_over_housner": ratio}))
         block = done.block  # about the points where it turns: on the end of its wall inside the edge
-        reference = simulate_rocking(
-            block,
-            one_sine_pulse(peak=peak, duration=1.0),
-            duration=6.0,
-            restitution=ratio * block.housner_restitution,
-        )
-        yield analytic(
-            f"stack, {name}, pulse of 1 s and {peak:g} m/s2, {ratio:g} of Housner's restitution",
+        restitution, pulsed = ratio * block.housner_restitution, one_sine_pulse(peak=peak, duration=1.0)
+        reference = simulate_rocking(block, pulsed, duration=6.0, restitution=restitution)
+        case = f"stack, {name}, pulse of 1 s and {peak:g} m/s2, {ratio:g} of Housner's restitution"
+        compared, source = (
             "largest rotation over the slenderness angle",
-            float(done.track.max_rotation) / block.slenderness_angle,
-            reference.largest_rotation / block.slenderness_angle,
-            source="event-driven block with that restitution",
-            relative=0.03,
+            "event-driven block with that restitution",
         )
+        found = (float(done.track.max_rotation), reference.largest_rotation)
+        ratios = (rotation / block.slenderness_angle for rotation in found)
+        yield analytic(case, compared, *ratios, source=source, relative=0.03)
 
 
 @check(

@@ -53,15 +53,10 @@ def stick_limit() -> Findings:
         values = runs.harmonic(peak / OMEGA**2, OMEGA) | runs.FRICTION | {"solver.duration_s": 2.0 * PERIOD}
         return runs.run(runs.BOX, values).outcome == Outcome.SLIDE
 
-    yield analytic(
-        "rigid box, mu 0.4/0.2, Omega = 10 rad/s",
-        "floor acceleration above which it slides [m/s2]",
-        runs.bisected(slides, 3.0, 5.0, resolution=1e-4),
-        0.4 * runs.GRAVITY,
-        source="mu_s g",
-        relative=5e-3,
-        note="the springs of the stick reduce it by a factor of 1 + (Omega/omega_contact)^2",
-    )
+    case, limit = "rigid box, mu 0.4/0.2, Omega = 10 rad/s", runs.bisected(slides, 3.0, 5.0, resolution=1e-4)
+    compared, exact = "floor acceleration above which it slides [m/s2]", 0.4 * runs.GRAVITY
+    note = "the springs of the stick reduce it by a factor of 1 + (Omega/omega_contact)^2"
+    yield analytic(case, compared, limit, exact, source="mu_s g", relative=5e-3, note=note)
 
 
 @check("sliding", "incline")
@@ -77,14 +72,10 @@ def incline() -> Findings:
     done = runs.run(runs.BOX, slope | runs.pulse(-runs.GRAVITY * math.sin(angle), 5.0))
     late = done.history["time_s"] >= 0.2
     square = np.polyfit(done.history["time_s"][late], done.history["slip_m"][late], 2)[0]
-    yield analytic(
-        "rigid plate on a slope of 30 degrees, mu 0.2",
-        "acceleration down the slope [m/s2]",
-        2.0 * float(square),
-        incline_acceleration(angle=angle, mu_kinetic=0.2, gravity=runs.GRAVITY),
-        source="g (sin - mu cos) = 3.20586 m/s2",
-        relative=1e-3,
-    )
+    case, compared = "rigid plate on a slope of 30 degrees, mu 0.2", "acceleration down the slope [m/s2]"
+    exact = incline_acceleration(angle=angle, mu_kinetic=0.2, gravity=runs.GRAVITY)
+    source = "g (sin - mu cos) = 3.20586 m/s2"
+    yield analytic(case, compared, 2.0 * float(square), exact, source=source, relative=1e-3)
 
 
 @check("sliding", "lasting stick")
@@ -112,15 +103,11 @@ def creep() -> Findings:
         "solver.duration_s": 20.0,
     }
     done = runs.run(runs.BOX, regularised | runs.pulse(-share * 0.4 * runs.GRAVITY, 20.0))
-    yield analytic(
-        "rigid box, friction regularised in velocity, half its limit for 20 s",
-        "creep [m]",
-        done.history["slip_m"][-1],
-        20.0 * velocity * math.atanh(share),
-        source="v_reg atanh(s) t",
-        relative=STROKE_TOLERANCE,
-        note="a property of this law; the default law sticks",
-    )
+    case = "rigid box, friction regularised in velocity, half its limit for 20 s"
+    crept, exact = done.history["slip_m"][-1], 20.0 * velocity * math.atanh(share)
+    source, note = "v_reg atanh(s) t", "a property of this law; the default law sticks"
+    within = STROKE_TOLERANCE
+    yield analytic(case, "creep [m]", crept, exact, source=source, relative=within, note=note)
 
 
 @check("sliding", "friction heat")
@@ -145,14 +132,8 @@ def push_on_every_support() -> Findings:
     ):
         for model, values in {"rigid": {}, "shell": SHELL}.items():
             done = runs.run(case, SUPPORTS[kind] | pushed | values)
-            yield analytic(
-                f"{model} {name} on {kind}, pushed at 1 m/s, mu 0.2",
-                "path [m]",
-                done.history["slip_m"][-1],
-                path,
-                source="v^2/(2 mu g)",
-                relative=tolerance,
-            )
+            what, slip = f"{model} {name} on {kind}, pushed at 1 m/s, mu 0.2", done.history["slip_m"][-1]
+            yield analytic(what, "path [m]", slip, path, source="v^2/(2 mu g)", relative=tolerance)
 
 
 @check("sliding", "half-sine pulse")
@@ -172,14 +153,12 @@ def half_sine() -> Findings:
         exact = simulate_sliding(slider, half_sine_pulse(peak=2.65, duration=2.0), duration=3.0).largest_slip
         motion = runs.pulse(2.65, 2.0, "half-sine") | {"contact.mu_static": mu, "solver.duration_s": 3.0}
         for name, case, values in boxes:
-            yield computed(
-                f"{name}, half-sine of 2.65 m/s2 and 2 s, mu {mu}",
-                "largest slip [m]",
+            slip, name = (
                 runs.run(case, motion | values).joint.max_slip,
-                exact,
-                source=SLIDER,
-                relative=STROKE_TOLERANCE,
+                f"{name}, half-sine of 2.65 m/s2 and 2 s",
             )
+            compared = f"{name}, mu {mu}", "largest slip [m]"
+            yield computed(*compared, slip, exact, source=SLIDER, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "steady strokes")
@@ -255,14 +234,12 @@ def falling_friction() -> Findings:
     """Steady stroke of the paper's box where friction falls from 0.4 to 0.2 like exp(-(v/v_s)^2)."""
     for stribeck, stroke in ((0.1, 37.222e-3), (0.3, 12.522e-3)):
         changed = {"contact.stribeck_velocity_m_s": stribeck, "solver.duration_s": 20.0}
-        yield computed(
+        case, source = (
             f"rigid box, A = 0.05 m, Omega = 10 rad/s, v_s = {stribeck:g} m/s",
-            "steady slip, peak to peak [m]",
-            stroke_of(runs.run(runs.BOX, PAPER_BOX | changed)),
-            stroke,
-            source="rigid slider in steps of 10 us, explicit",
-            relative=STROKE_TOLERANCE,
+            "rigid slider in steps of 10 us, explicit",
         )
+        found = "steady slip, peak to peak [m]", stroke_of(runs.run(runs.BOX, PAPER_BOX | changed))
+        yield computed(case, *found, stroke, source=source, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "the paper's box on a fast floor")
@@ -279,9 +256,8 @@ def paper_slider() -> Findings:
 @check("sliding", "position of the paper's box")
 def paper_slider_position() -> Findings:
     """Slip of that box: the largest, after ten periods, and at every instant of them."""
-    done = runs.run(
-        runs.BOX, PAPER_BOX | {"solver.duration_s": 10.0 * PERIOD, "output.history_s": PERIOD / 100}
-    )
+    sampled = {"solver.duration_s": 10.0 * PERIOD, "output.history_s": PERIOD / 100}
+    done = runs.run(runs.BOX, PAPER_BOX | sampled)
     times, slip = done.history["time_s"], done.history["slip_m"]
     exact = slip_of_the_papers_slider(times)
     case = "rigid box, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2"
@@ -313,15 +289,9 @@ def short_stops() -> Findings:
         done = runs.run(runs.BOX, values | keys)
         least = float(done.history["slip_m"].min())
         exact = float(slip_of_the_papers_slider(done.history["time_s"], start_velocity=-0.5).min())
-        yield computed(
-            f"{name}, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2, at rest at t = 0",
-            "least slip [m]",
-            least,
-            exact,
-            source=SLIDER,
-            relative=tolerance,
-            note="a shell swings on when it stops" if tolerance > 0.01 else "",
-        )
+        case = f"{name}, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2, at rest at t = 0"
+        note = "a shell swings on when it stops" if tolerance > 0.01 else ""
+        yield computed(case, "least slip [m]", least, exact, source=SLIDER, relative=tolerance, note=note)
 
 
 @check("sliding", "a pull below stiction")
@@ -335,13 +305,12 @@ def pull_below_stiction() -> Findings:
     for name, keys in bodies.items():
         for share in (0.8, 0.98):
             values = runs.pulse(share * 0.4 * runs.GRAVITY, 0.5) | runs.FRICTION | {"solver.duration_s": 1.0}
-            yield analytic(
+            case, slip = (
                 f"{name}, {share:g} of stiction for 0.5 s, mu 0.4/0.2",
-                "largest slip over the width",
-                runs.run(runs.BOX, values | keys).joint.max_slip / 1.1,
-                source="a rigid slider rests",
-                absolute=1e-4,
+                runs.run(runs.BOX, values | keys).joint.max_slip,
             )
+            compared, source = "largest slip over the width", "a rigid slider rests"
+            yield analytic(case, compared, slip / 1.1, source=source, absolute=1e-4)
 
 
 @check("sliding", "rectangular pulse")
@@ -379,13 +348,12 @@ def slip_of_a_driven_box(case: str, keys: runs.Keys, floor: FloorAcceleration, g
     done = runs.run(runs.BOX, runs.harmonic(0.05, 10.0) | friction | keys)
     slider = RigidSlider(mu_static=0.3, mu_kinetic=0.2, gravity=gravity)
     exact = simulate_sliding(slider, floor, duration=5.0).at(done.history["time_s"])[0]
-    return computed(
+    case, compared = (
         f"rigid box, mu 0.3/0.2, 5 m/s2 at 10 rad/s, {case}",
         "slip in 5 s, largest difference over the largest slip",
-        np.abs(done.history["slip_m"] - exact).max() / np.abs(exact).max(),
-        source=SLIDER,
-        absolute=1e-2,
     )
+    difference = np.abs(done.history["slip_m"] - exact).max() / np.abs(exact).max()
+    return computed(case, compared, difference, source=SLIDER, absolute=1e-2)
 
 
 def longest_stop(done: runs.Finished, since: float) -> float:

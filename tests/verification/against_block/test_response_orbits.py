@@ -21,17 +21,9 @@ GRAVITY = 9.81
 #: Housner's restitution is 0.9 at sin^2 al = 1/15: the orbit of Spanos and Koh that benchmarks quote
 WIDTH = 4.0 * math.tan(math.asin(math.sqrt(1.0 / 15.0)))
 BLOCK = RigidBlock.homogeneous(width=WIDTH, height=4.0)
-CASE = STACK.with_values(
-    {
-        "container.width_m": WIDTH,
-        "container.depth_m": 1.0,
-        "container.density_kg_m3": 2000.0,
-        "contact.mu_static": 3.0,
-        "motion.kind": "harmonic",
-        "motion.amplitude_m": 0.08,
-        "motion.frequency_Hz": 1.0,
-    }
-)
+BODY = {"container.width_m": WIDTH, "container.depth_m": 1.0, "container.density_kg_m3": 2000.0}
+DRIVE = {"motion.kind": "harmonic", "motion.amplitude_m": 0.08, "motion.frequency_Hz": 1.0}
+CASE = STACK.with_values(BODY | DRIVE | {"contact.mu_static": 3.0})
 
 
 def request_of(*, first, last, count, settle=30, observe=12, **changes):
@@ -44,8 +36,7 @@ def request_of(*, first, last, count, settle=30, observe=12, **changes):
 def followed(request):
     """The point of the lowest frequency, from its start."""
     task = Task(way="up", number=0, model=request.case.solver.model)
-    point, _ = follow_point(request, request.case_at(0), discretise(request.case), task)
-    return point
+    return follow_point(request, request.case_at(0), discretise(request.case), task)[0]
 
 
 def swept(request):
@@ -73,16 +64,9 @@ def test_the_steady_symmetric_orbit_is_the_analytic_blocks():
     orbit = symmetric_orbit_slender(acceleration_ratio=3.0, frequency_ratio=3.0, restitution=0.9)
     assert orbit.post_impact_speed == pytest.approx(1.302075, abs=1e-6)
     speed = orbit.post_impact_speed * angle * rate
-    request = request_of(
-        first=1.0 / cycle,
-        last=1.01 / cycle,
-        count=2,
-        motion__amplitude_m=amplitude,
-        motion__angular_frequency_rad_s=omega,
-        motion__phase_rad=orbit.impact_phase,
-        initial__angular_velocity_rad_s=speed,
-    )
-    point = followed(request)
+    motion = {"motion__amplitude_m": amplitude, "motion__angular_frequency_rad_s": omega}
+    start = {"motion__phase_rad": orbit.impact_phase, "initial__angular_velocity_rad_s": speed}
+    point = followed(request_of(first=1.0 / cycle, last=1.01 / cycle, count=2, **motion, **start))
     assert (point.row.began, point.row.long_time, point.row.period_n) == ("case", "periodic", 1)
     assert point.row.scatter < 1e-3
     # A symmetric orbit: each half period is the mirror image of the one before.
@@ -104,19 +88,11 @@ def test_the_steady_slip_is_that_of_a_rigid_slider(friction_ratio, stroke):
     assert steady_stroke(friction_ratio=friction_ratio, static_ratio=1.0) == pytest.approx(stroke, abs=1e-6)
     amplitude = 0.1
     frequency = math.sqrt(0.2 * GRAVITY / (friction_ratio * amplitude)) / (2.0 * math.pi)
-    request = request_of(
-        first=frequency,
-        last=1.01 * frequency,
-        count=2,
-        settle=20,
-        container__width_m=4.0,
-        container__height_m=1.0,
-        contact__mu_static=0.2,
-        contact__mu_kinetic=0.2,
-        motion__amplitude_m=amplitude,
-        motion__frequency_Hz=frequency,
-    )
-    point = followed(request)
+    low = {"container__width_m": 4.0, "container__height_m": 1.0}
+    friction = {"contact__mu_static": 0.2, "contact__mu_kinetic": 0.2}
+    motion = {"motion__amplitude_m": amplitude, "motion__frequency_Hz": frequency}
+    ends = {"first": frequency, "last": 1.01 * frequency}
+    point = followed(request_of(**ends, count=2, settle=20, **low, **friction, **motion))
     assert (point.row.motion, point.row.long_time, point.row.period_n) == ("slide", "periodic", 1)
     assert point.extremes[:, 4] == pytest.approx(stroke * amplitude, rel=5e-3)
     assert point.sections[:, 3] == pytest.approx(0.0, abs=1e-3 * amplitude)
@@ -144,9 +120,8 @@ def test_undriven_rocking_dies_out_when_the_analytic_blocks_does():
     request = request_of(first=1.0, last=1.1, count=2, motion__amplitude_m=0.1)
     point = followed(request)
     rotation, velocity = point.sections[-1, :2]
-    free = simulate_rocking(
-        BLOCK, still_floor(), duration=20.0, rotation=float(rotation), angular_velocity=float(velocity)
-    )
+    start = {"rotation": float(rotation), "angular_velocity": float(velocity)}
+    free = simulate_rocking(BLOCK, still_floor(), duration=20.0, **start)
     times = np.arange(0.0, 20.0, 1e-3)
     beyond = np.abs(free.at(times)[0]) > 0.01 * BLOCK.slenderness_angle
     exact = times[beyond][-1]
@@ -170,9 +145,8 @@ def test_a_change_of_the_drive_moves_neither_floor_nor_container(changed):
     case = request_of(first=1.0, last=1.1, count=2, motion__amplitude_m=0.1).case
     container = discretise(case)
     before, _ = follow_periods(started(case, container), 3)
-    after = carry_drive(
-        case.with_values({changed: 0.9 * (0.1 if "amp" in changed else 1.0)}), container, before
-    )
+    other = case.with_values({changed: 0.9 * (0.1 if "amp" in changed else 1.0)})
+    after = carry_drive(other, container, before)
     assert abs(before.run.floor[0, 1]) < 1e-12 and abs(after.run.floor[0, 1]) < 1e-12
     for name in ("velocity", "force", "stick", "energy"):
         assert np.array_equal(getattr(before.run.old, name), getattr(after.run.old, name)), name

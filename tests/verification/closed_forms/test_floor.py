@@ -112,13 +112,29 @@ def test_a_horizontal_motion_slips_where_the_closed_form_says():
     for along, limit in (("horizontal", 0.3912), ("floor", 0.3995)):
         keys = {"floor.slope_percent": 5.0, "floor.motion_along": along, "contact.mu_static": 0.45}
         keys |= {"container.height_m": 0.5, "solver.duration_s": 0.5}
-        slips = [
-            stepped(
-                build_model(BOX.with_values(pulse(-share * limit * GRAVITY, 0.2) | keys)), 0.4
-            ).run.joints[0]
-            for share in (0.996, 1.004)
-        ]
-        assert slips[0].slip_travel < 1e-5 < 1e-4 < slips[1].slip_travel, along
+        pulses = (pulse(-share * limit * GRAVITY, 0.2) for share in (0.996, 1.004))
+        below, above = (stepped(build_model(BOX.with_values(one | keys)), 0.4) for one in pulses)
+        assert below.run.joints[0].slip_travel < 1e-5 < 1e-4 < above.run.joints[0].slip_travel, along
+
+
+@pytest.mark.parametrize(("along", "slip"), [("horizontal", 0.0425), ("floor", 0.0289)])
+def test_a_horizontal_motion_on_a_slope_takes_weight_off_it(along, slip):
+    # braking at 0.42 g within 0.05 s, for 0.5 s, on a bed that falls 5 % forward; a point mass by explicit steps
+    times, braking = np.array([0.0, 0.05, 0.55, 0.6]), 0.42 * GRAVITY * np.array([0.0, 1.0, 1.0, 0.0])
+    cosine, sine = math.cos(math.atan(0.05)), math.sin(math.atan(0.05))
+    a = np.interp(np.arange(0.0, 3.0, 1e-5), times, braking, right=0.0)
+    turned = along == "horizontal"
+    pushed = GRAVITY * sine + a * (cosine if turned else 1.0)
+    held = 0.45 * (GRAVITY * cosine - a * (sine if turned else 0.0))
+    velocity = exact = 0.0
+    for gain in 1e-5 * (pushed - held):
+        velocity = max(velocity + gain, 0.0)
+        exact += 1e-5 * velocity
+    assert exact == pytest.approx(slip, abs=1e-4)
+    keys = {"floor.slope_percent": 5.0, "floor.motion_along": along, "contact.mu_static": 0.45}
+    keys |= {"solver.duration_s": 1.2, "motion.gaps": "bridge"}
+    done = stepped(build_model(BOX.with_motion(times, -braking).with_values(keys)), 1.0)
+    assert done.run.joints[0].max_slip == pytest.approx(exact, rel=0.01)
 
 
 def test_a_vertical_motion_on_a_slope_is_turned_too():

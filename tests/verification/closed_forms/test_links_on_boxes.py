@@ -80,17 +80,9 @@ def test_a_tie_holds_down_the_lower_box_and_the_upper_one_stands_on_it_by_itself
     assert tied.model.run.joints[1].max_opening < 1e-3  # 7 m/s2 lift no box of 1.1 x 1.0 m
 
 
-FOUR = TWO.with_values(
-    {
-        **harmonic(0.08, 8.0),
-        "container.boxes": 4,
-        "contact.mu_static": 0.2,
-        "contact.mu_kinetic": 0.15,
-        "joints.mu_static": 0.3,
-        "joints.mu_kinetic": 0.25,
-        "solver.duration_s": 3.0,
-    }
-)
+SLIPPERY = {"contact.mu_static": 0.2, "contact.mu_kinetic": 0.15}
+SLIPPERY |= {"joints.mu_static": 0.3, "joints.mu_kinetic": 0.25}
+FOUR = TWO.with_values(SLIPPERY | {**harmonic(0.08, 8.0), "container.boxes": 4, "solver.duration_s": 3.0})
 WALLS = tuple(
     {"side": side, "height_m": height, "gap_m": gap, "stiffness_N_m": 1e8, "mu": 0.3, "restitution": 0.4}
     for side, height, gap in (("right", 0.5, 0.02), ("left", 3.5, 0.03))
@@ -110,11 +102,8 @@ def closes(found: Finished) -> bool:
 
 @pytest.mark.parametrize(
     ("case", "links", "beside", "until"),
-    [
-        (ROW, ENDS, (), 0.8),
-        (FOUR, WALLS, (), 0.3),
-        (ROW, ENDS, (BESIDE,), 0.8),
-    ],  # boxes that rattle soon tell rounding errors apart
+    # boxes that rattle soon tell rounding errors apart
+    [(ROW, ENDS, (), 0.8), (FOUR, WALLS, (), 0.3), (ROW, ENDS, (BESIDE,), 0.8)],
     ids=["one", "loose boxes", "row"],
 )
 def test_the_mirror_image_and_another_order_hit_alike_and_the_ledger_closes(case, links, beside, until):

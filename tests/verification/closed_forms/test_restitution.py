@@ -140,23 +140,14 @@ def test_loose_boxes_that_rock_as_one_lose_as_the_bolted_stack():
     assert abs(boxes.run.ledger[IMBALANCE]) <= 1e-2 * boxes.run.ledger[IMPACTS]
 
 
-def on_a_wide_box(share, peak=3.8, offset=0.0):
-    """The block on a box that stands, after 3 s."""
-    motion = PulseMotion(shape="sine", acceleration=peak, pulse=1.0)
-    wide, high = Box(width=4.0, mass=1e5), Box(height=4.0, mass=1e4, offset=offset)
-    boxes = stack_rig([wide, high], motion=motion, mu=3.0, joint_mu=3.0)
-    boxes.joints["impact_share"] = share
-    boxes.advance(3.0)
-    return boxes
-
-
 def test_a_box_that_rocks_on_one_that_stands_loses_as_on_the_floor():
     motion, largest = PulseMotion(shape="sine", acceleration=3.8, pulse=1.0), []
     for share in (0.9, 1.05):
-        boxes, alone = (
-            on_a_wide_box(share),
-            rig(replace(HELD, impact_share=share), motion=motion).advance(3.0),
-        )
+        wide, high = Box(width=4.0, mass=1e5), Box(height=4.0, mass=1e4)
+        boxes = stack_rig([wide, high], motion=motion, mu=3.0, joint_mu=3.0)
+        boxes.joints["impact_share"] = share
+        boxes.advance(3.0)
+        alone = rig(replace(HELD, impact_share=share), motion=motion).advance(3.0)
         assert boxes.run.ledger[IMPACTS] == pytest.approx(alone.run.ledger[IMPACTS], rel=5e-3)
         rotation, angle = boxes.box(1, 0), alone.block.slenderness_angle
         # the wide box gives way: 1.1 % without the share
@@ -177,14 +168,8 @@ def test_boxes_that_land_on_boxes_that_rock_lose_nothing_there():
 @pytest.mark.parametrize("side", ["right", "left"])
 def test_every_container_of_a_row_loses_as_it_does_alone(side):
     held = {"contact.mu_static": 3.0, "contact.restitution_over_housner": 0.9, "solver.duration_s": 3.0}
-    larger = {
-        "side": side,
-        "gap_m": 3.0,
-        "stiffness_N_m": 1e8,
-        "width_m": 1.3,
-        "height_m": 5.0,
-        "mass_kg": 2e4,
-    }
+    larger = {"side": side, "gap_m": 3.0, "stiffness_N_m": 1e8}
+    larger |= {"width_m": 1.3, "height_m": 5.0, "mass_kg": 2e4}
     case = STACK.with_values({"neighbour": [larger], **held, **pulse(3.8, 1.0, "sine")})
     row, alone = run(case), [run(one) for one in case.row]
     lost = [one.model.run.ledger[IMPACTS] for one in alone]

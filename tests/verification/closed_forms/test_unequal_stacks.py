@@ -24,10 +24,8 @@ LIGHT = f"{BOX}mass_kg = 4000.0\n{BOX}width_m = 0.8\nheight_m = 0.6\nmass_kg = 8
 
 
 def stack(boxes: str = LIGHT, motion: str = 'kind = "none"', more: str = "") -> Case:
-    text = LEAST.replace("[contact]", f"youngs_modulus_Pa = 1e9\n{boxes}[contact]")
-    return read_case(
-        text.replace('kind = "none"', motion).replace("mu_static = 0.4", "mu_static = 2.0") + more
-    )
+    text = LEAST.replace("[contact]", f"youngs_modulus_Pa = 1e9\n{boxes}[contact]") + more
+    return read_case(text.replace('kind = "none"', motion).replace("mu_static = 0.4", "mu_static = 2.0"))
 
 
 def test_static_checks_are_those_of_the_nearer_corner():

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, rig
 from cases import LEAST
-from runs import difference, run, stack, times
+from runs import difference, run, stack
 
 from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import Case, read_case
@@ -40,9 +40,8 @@ def error_of_a_shaken_block(step: float) -> float:
     # m u'' + c u' + k u = -m floor'', u above the settled height over the floor, u = u' = 0 at t = 0
     m, k = block.mass, block.base_stiffness
     c = k * block.relaxation_time
-    forced = (
-        m * amplitude * omega**2 * np.exp(1j * (phase - 0.5 * math.pi)) / (k - m * omega**2 + 1j * omega * c)
-    )
+    pull = m * amplitude * omega**2 * np.exp(1j * (phase - 0.5 * math.pi))
+    forced = pull / (k - m * omega**2 + 1j * omega * c)
     natural, decay = math.sqrt(k / m), 0.5 * c / m
     damped = math.sqrt(natural**2 - decay**2)
     start, rate = -forced.real, -(1j * omega * forced).real
@@ -74,12 +73,8 @@ def test_a_constant_acceleration_is_another_gravity_for_the_full_model(accelerat
 
 @pytest.mark.parametrize("model", ["rigid", "reduced"])
 def test_a_container_settled_on_an_accelerating_floor_stays_settled(model):
-    values = PULL | {
-        "vertical.peak_acceleration_m_s2": 3.0,
-        "solver.model": model,
-        "solver.element_size_m": 0.5,
-    }
-    still = run(box(solver__duration_s=1.0).with_values(values))
+    keys = {"solver__model": model, "solver__element_size_m": 0.5, "solver__duration_s": 1.0}
+    still = run(box(**keys).with_values(PULL | {"vertical.peak_acceleration_m_s2": 3.0}))
     assert still.history["normal_force_N"] == pytest.approx(2500.0 * 12.81, rel=1e-6)
     assert np.ptp(still.history["centre_z_m"]) < 1e-9
 
@@ -89,9 +84,9 @@ def test_a_container_on_a_falling_floor_is_weightless(model):
     values = {"vertical.peak_acceleration_m_s2": -9.81, "vertical.delay_s": 0.1, "solver.duration_s": 0.5}
     case = box(solver__model=model, solver__element_size_m=0.5, output__history_s=0.005)
     fall = run(case.with_values(PULL | values))
-    force, before = fall.history["normal_force_N"], times(fall) <= 0.1
+    force, before = fall.history["normal_force_N"], fall.times <= 0.1
     assert force[before] == pytest.approx(24525.0, rel=1e-4)
-    assert (force[times(fall) >= 0.12] == 0.0).all()
+    assert (force[fall.times >= 0.12] == 0.0).all()
     ledger = fall.model.run.ledger
     assert abs(ledger[-1]) < 1e-4 * fall.model.run.problem.control.reference_energy
     # it keeps its place over the floor, which has fallen by 0.8 m
@@ -102,12 +97,8 @@ def test_nothing_changes_on_a_floor_that_rises_steadily(tmp_path):
     # Beyond its slenderness angle when time is up, so the frame changes to that of the floor as well.
     (tmp_path / "rising.csv").write_text("time_s,displacement_m\n0,0\n2,3\n4,6\n")
     rising = '\n[vertical]\nkind = "table"\nfile = "rising.csv"\nquantity = "displacement"\nunit = "m"\n'
-    falling = {
-        "initial.rotation_rad": 0.84,
-        "solver.duration_s": 0.3,
-        "solver.model": "rigid",
-        "output.fields_s": 0.0,
-    }
+    falling = {"initial.rotation_rad": 0.84, "solver.duration_s": 0.3}
+    falling |= {"solver.model": "rigid", "output.fields_s": 0.0}
     runs = [run(read_case(text, folder=tmp_path).with_values(falling)) for text in (LEAST, LEAST + rising)]
     assert runs[0].status == runs[1].status == "overturned"
     assert float(runs[0].track.overturned_at) > 0.5
@@ -123,12 +114,8 @@ def test_nothing_changes_on_a_floor_that_rises_steadily(tmp_path):
 @pytest.mark.parametrize("scale", [1.0, -1.0])
 def test_restitution_is_that_of_the_impact_whatever_the_floor_does(scale):
     # Heights of the turning points alone would give 0.75 and 1.11: the floor lifts and lowers what gravity pulls.
-    common = PENALTY | {"solver.model": "rigid"}
-    upward = SHAKING | {
-        "vertical.frequency_Hz": 0.8,
-        "vertical.peak_acceleration_m_s2": 4.0,
-        "vertical.scale": scale,
-    }
+    common, slow = PENALTY | {"solver.model": "rigid"}, {"vertical.frequency_Hz": 0.8}
+    upward = SHAKING | slow | {"vertical.peak_acceleration_m_s2": 4.0, "vertical.scale": scale}
     quiet, shaken = run(stack().with_values(common)), run(stack().with_values(common | upward))
     assert float(quiet.track.restitution) == pytest.approx(quiet.block.housner_restitution, abs=0.005)
     assert float(shaken.track.restitution) == pytest.approx(float(quiet.track.restitution), abs=0.005)
@@ -145,8 +132,8 @@ def test_contents_feel_the_vertical_motion():
 
 
 def test_a_run_ends_at_rest_on_a_floor_that_goes_on_rising():
-    pulse = {"vertical.kind": "pulse", "vertical.shape": "rectangular", "vertical.pulse_s": 0.3}
-    rest = run(box(initial__rotation_rad=0.05).with_values(pulse | {"vertical.peak_acceleration_m_s2": 2.0}))
+    pulse = PULL | {"vertical.pulse_s": 0.3, "vertical.peak_acceleration_m_s2": 2.0}
+    rest = run(box(initial__rotation_rad=0.05).with_values(pulse))
     end = float(rest.model.run.clock[0].time)
     assert rest.status == "completed"
     assert rest.model.run.lift[0, 1] == pytest.approx(0.6)
@@ -160,6 +147,5 @@ def test_the_start_holds_for_both_components(start, share):
     model = build_model(box(solver__duration_s=1.0).with_values(upward | along | {"motion.start": start}))
     speeds = share * 2.0 * math.pi * np.array([0.02, 0.02])
     assert model.run.old.velocity[:2] == pytest.approx(speeds, rel=1e-12)
-    assert model.run.old.energy[0] == pytest.approx(
-        0.5 * 2500.0 * ((0.02 * 2.0 * math.pi * share) ** 2 + (0.02 * 2.0 * math.pi * (1.0 - share)) ** 2)
-    )
+    # at rest the floor moves away below it
+    assert model.run.old.energy[0] == pytest.approx(0.5 * 2500.0 * (0.02 * 2.0 * math.pi) ** 2)

@@ -30,12 +30,9 @@ def test_the_number_of_threads_changes_no_byte(tmp_path, overrides):
     variables = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS")
     for threads in ("1", "2"):
         words = run_command("seed_stack_plateau", tmp_path / threads, "output.figures=false", *overrides)
-        subprocess.run(
-            [sys.executable, "-m", "fem", *words, "--no-band"],
-            env=os.environ | dict.fromkeys(variables, threads),
-            check=True,
-            timeout=600,
-        )
+        command = [sys.executable, "-m", "fem", *words, "--no-band"]
+        few = os.environ | dict.fromkeys(variables, threads)
+        subprocess.run(command, env=few, check=True, timeout=600)
     require_same(tmp_path / "1", tmp_path / "2")
 
 

@@ -13,7 +13,7 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
-from runs import difference, first_impact, run, stack, times, velocity_ratio
+from runs import difference, run, stack, velocity_ratio
 
 from fem.model.container import Container
 from fem.model.model import Model, build_model
@@ -120,10 +120,10 @@ def test_reduced_follows_full_through_two_impacts_and_loses_as_much(section: str
         run(stack(section, support__kind=kind, solver__model=model, solver__energy_tolerance=0.3))
         for model in ("reduced", "full")
     )
-    first = min(first_impact(reduced), first_impact(full))
+    first = min(reduced.track.first_impact, full.track.first_impact)
     assert first < 0.75
     assert difference(reduced, full, until=first) <= 5e-4
-    assert first_impact(reduced) == pytest.approx(first_impact(full), rel=1e-3)
+    assert reduced.track.first_impact == pytest.approx(full.track.first_impact, rel=1e-3)
     assert velocity_ratio(full) < 0.97
     assert velocity_ratio(reduced) == pytest.approx(velocity_ratio(full), abs=0.01)
     by_energy = [float(each.track.restitution) for each in (reduced, full)]
@@ -138,7 +138,7 @@ def test_reduced_vibrates_at_the_floor_as_full_does() -> None:
     # without a fill, which would damp it
     keys = {"support__kind": "corners", "solver__energy_tolerance": 0.3, "container__fill": "none"}
     reduced, full = (run(stack("shell", solver__model=model, **keys)) for model in ("reduced", "full"))
-    window = (times(full) > first_impact(full) + 0.05) & (times(full) < first_impact(full) + 0.3)
+    window = (full.times > full.track.first_impact + 0.05) & (full.times < full.track.first_impact + 0.3)
     forces = [each.history["normal_force_N"][: window.size][window] for each in (reduced, full)]
     ringing = np.std(forces[1])
     assert ringing > 98100.0

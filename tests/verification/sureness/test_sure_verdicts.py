@@ -10,24 +10,12 @@ from fem.run.run import RunOptions, run_case
 
 QUICK = {"floor.kind": "rigid", "output.fields_s": 0.0, "output.figures": False, "uncertainty.draws": 4}
 #: mass centre, base and floor are those of the case
-GEOMETRY = dict.fromkeys(
-    [
-        f"uncertainty.{name}"
-        for name in ("support", "centroid_m", "eccentricity_m", "effective_width", "slope_percent")
-    ],
-    "held",
-)
-FLAT = GEOMETRY | {
-    "support.kind": "flat",
-    "contact.mu_kinetic": 0.4,
-    "solver.duration_s": 15.0,
-    "uncertainty.normal_penalty_Pa_m": "known",
-    "uncertainty.damping_ratio": "known",
-    "uncertainty.material_damping_ratio": "known",
-    "uncertainty.mu_kinetic": "held",
-    "uncertainty.mu_static": "held",
-    "uncertainty.ramp": "held",
-}
+SHAPE = ("support", "centroid_m", "eccentricity_m", "effective_width", "slope_percent")
+GEOMETRY = {f"uncertainty.{name}": "held" for name in SHAPE}
+FLAT = GEOMETRY | {"support.kind": "flat", "contact.mu_kinetic": 0.4, "solver.duration_s": 15.0}
+FLAT |= {f"uncertainty.{name}": "held" for name in ("mu_kinetic", "mu_static", "ramp")}
+KNOWN = ("normal_penalty_Pa_m", "damping_ratio", "material_damping_ratio")
+FLAT |= {f"uncertainty.{name}": "known" for name in KNOWN}
 UPLIFT = 2.698  # m/s2, of the stack as a rigid block: g a/h
 
 
@@ -38,15 +26,9 @@ def verdict_of(folder, name, values):
 
 def pulse(model="reduced", **values):
     """A box of steel under a rectangular pulse of 0.80 of what breaks it loose."""
-    given = {
-        "motion.kind": "pulse",
-        "motion.shape": "rectangular",
-        "motion.pulse_s": 0.5,
-        "motion.delay_s": 0.1,
-        "motion.peak_acceleration_m_s2": 3.14,
-        "solver.duration_s": 1.5,
-        "solver.model": model,
-    }
+    given = {"motion.kind": "pulse", "motion.shape": "rectangular", "motion.pulse_s": 0.5}
+    given |= {"motion.delay_s": 0.1, "motion.peak_acceleration_m_s2": 3.14}
+    given |= {"solver.duration_s": 1.5, "solver.model": model}
     return given | {key.replace("__", "."): value for key, value in values.items()}
 
 
@@ -99,12 +81,8 @@ def test_a_flat_base_that_rocks_below_uplift_is_not_sure(tmp_path, model, share)
 
 
 def test_corners_below_uplift_rest_and_are_sure(tmp_path):
-    values = {
-        "solver.model": "rigid",
-        "contact.mu_kinetic": 0.4,
-        "motion.peak_acceleration_m_s2": 0.95 * UPLIFT,
-        "uncertainty.mu_kinetic": "held",
-    }
+    values = {"solver.model": "rigid", "contact.mu_kinetic": 0.4, "uncertainty.mu_kinetic": "held"}
+    values |= {"motion.peak_acceleration_m_s2": 0.95 * UPLIFT}
     verdict = verdict_of(tmp_path, "seed_stack_plateau", GEOMETRY | values).verdict
     assert (verdict.outcome, verdict.sure, verdict.decided_by) == ("rest", "sure", ())
     assert verdict.band.draws_overturned == 0
