@@ -1,4 +1,4 @@
-"""Assembled matrices and forces against closed forms and differences; the outline as edges and lines through them."""
+"""Plane-stress laws, matrices and forces against closed forms and differences; the outline as edges and lines."""
 
 from itertools import pairwise
 
@@ -8,10 +8,12 @@ import scipy.sparse.linalg
 from loads import edge_load, force_and_energy, internal_force, tangent
 from meshes import mapped_mesh
 
+from fem.solid import elasticity
 from fem.solid.assembly import assemble
 from fem.solid.edges import chained, outline_edges
 
-STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
+E, NU = 2.1e11, 0.3
+STEEL, PAIR = {"youngs_modulus": E, "poisson_ratio": NU}, elasticity.plane_stress_lame(E, NU)
 ORDERS = pytest.mark.parametrize("order", [1, 2])
 
 
@@ -39,9 +41,13 @@ def distorted_mesh(columns=4, rows=5, width=1.1, height=4.0):
     return mesh
 
 
+def rotation(angle):
+    """Rotation > 0 tilts toward +x, that is clockwise."""
+    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+
+
 def rigid_displacement(nodes, angle, shift=(0.0, 0.0)):
-    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    return nodes @ turn.T - nodes + np.asarray(shift)
+    return nodes @ rotation(angle).T - nodes + np.asarray(shift)
 
 
 def strained_and_turned(elements, strain=1e-3, angle=0.7, seed=5):
@@ -133,8 +139,8 @@ def test_thickness_belongs_to_each_cell(order):
 def test_nodal_stress_of_pure_bending_is_exact_for_quadratic_cells():
     # u = (k x z, -k (x^2 + nu z^2)/2) has sigma_xx = E k z and nothing else, to first order in k.
     elements = assemble(quad_mesh(np.linspace(0, 2, 5), np.linspace(-0.5, 0.5, 3)), order=2, **STEEL)
-    (x, z), k, (E, nu) = elements.nodes.T, 1e-9, STEEL.values()
-    stress = elements.nodal_stress(np.stack([k * x * z, -0.5 * k * (x * x + nu * z * z)], axis=1))
+    (x, z), k = elements.nodes.T, 1e-9
+    stress = elements.nodal_stress(np.stack([k * x * z, -0.5 * k * (x * x + NU * z * z)], axis=1))
     assert stress[:, 0] == pytest.approx(E * k * z, abs=1e-7 * E * k)
     assert np.abs(stress[:, 1:]).max() < 1e-7 * E * k
 
@@ -162,3 +168,46 @@ def test_the_outline_is_the_outer_edges_and_the_joints():
     drawn = sorted(tuple(sorted(pair)) for line in lines for pair in pairwise(line))
     assert drawn == sorted(tuple(sorted(pair)) for pair in edges.tolist())
     assert len(lines) <= 2
+
+
+def test_plane_stress_pair_gives_hookes_law_of_a_thin_sheet():
+    # Pulled along x and free across: stress E eps along, none across.
+    strain = np.array([1e-4, -NU * 1e-4, 0.0])
+    assert elasticity.second_stress(strain, PAIR) == pytest.approx([E * 1e-4, 0.0, 0.0], rel=1e-14, abs=1e-7)
+    # Sheared: stress G gamma, the tensor's component being gamma/2.
+    shear = elasticity.second_stress(np.array([0.0, 0.0, 0.5e-4]), PAIR)
+    assert shear == pytest.approx([0.0, 0.0, E / (2 * (1 + NU)) * 1e-4], rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("modulus", "ratio", "message"),
+    [(value, NU, "Young's modulus") for value in (0.0, -1.0, np.nan, np.inf)]
+    + [(E, value, "Poisson's ratio") for value in (-1.0, 0.51, np.nan)],
+)
+def test_impossible_elastic_constants_are_refused(modulus, ratio, message):
+    with pytest.raises(ValueError, match=message):
+        elasticity.plane_stress_lame(modulus, ratio)
+
+
+def test_strain_of_a_stretch_under_rotation_is_that_of_the_stretch():
+    # (s^2 - 1)/2 along the stretched axis of the body, whatever the rotation.
+    gradient = rotation(1.2) @ np.diag([1.1, 0.95]) - np.eye(2)
+    assert elasticity.green_strain(gradient) == pytest.approx([0.105, -0.04875, 0.0], abs=1e-15)
+
+
+def test_true_stress_turns_with_the_body():
+    # Objectivity: sigma(Q F) = Q sigma(F) Q^T.
+    gradient, Q = np.array([[0.02, 0.01], [0.03, -0.03]]), rotation(0.8)
+    xx, zz, xz = elasticity.cauchy_stress(gradient, PAIR)
+    expected = Q @ np.array([[xx, xz], [xz, zz]]) @ Q.T
+    turned = elasticity.cauchy_stress(Q @ (np.eye(2) + gradient) - np.eye(2), PAIR)
+    assert turned == pytest.approx([expected[0, 0], expected[1, 1], expected[0, 1]], rel=1e-12)
+
+
+def test_true_stress_carries_the_force_of_a_pulled_bar_on_its_narrowed_section():
+    # Pulled to 1.1: E_xx = 0.105, S_xx = E E_xx, force per old section S_xx * 1.1. Across and through the
+    # thickness alike the bar shrinks to sqrt(1 - 2 nu E_xx).
+    across = np.sqrt(1 - 2 * NU * 0.105)
+    stress = elasticity.cauchy_stress(np.diag([0.1, across - 1.0]), PAIR)
+    assert stress[0] == pytest.approx(E * 0.105 * 1.1 / across**2, rel=1e-12)
+    assert np.abs(stress[1:]).max() < 1e-12 * E
