@@ -59,12 +59,7 @@ class MotionText:
         return RecordError(f"{self.name}{f', line {number}' if number else ''}: {why}")
 
     def measured(
-        self,
-        text: str,
-        what: str,
-        line: int | None = None,
-        *,
-        units: Mapping[str, float] = TIMES,
+        self, text: str, what: str, line: int | None = None, *, units: Mapping[str, float] = TIMES
     ) -> float:
         """A number of a header above zero, in the unit whose factor is 1, as it is where none stands behind the number.
 
