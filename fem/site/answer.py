@@ -1,6 +1,7 @@
 """The answer to a verification in words: what it rests on, and a sentence for all that speaks against it."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields
 from functools import partial
 from types import MappingProxyType
 from typing import Any
@@ -17,6 +18,7 @@ from fem.site.result import (
     REFINED,
     SET,
     ActionAnswer,
+    ByRule,
     ConfirmedRun,
     FurtherMotions,
     MotionSet,
@@ -94,7 +96,7 @@ def answer_of(
     further = further_motions(limits, runs, slips_of_further)
     against = [
         *_of_the_set(request, motions.count, groups, ranged, failed),
-        *(reason for group in further for reason in of_further(request, group)),
+        *(reason for group in further for reason in _of_further(request, group)),
         *_of_the_deciding(limits, tally, confirmed),
         *(_of_two_directions(slip, limits.slip_m) if slip else ()),
         *[(NOT_SURE, in_plane_only)] * bool(in_plane_only),
@@ -104,7 +106,7 @@ def answer_of(
     used = tally.utilisation(limits)
     if used is not None and slip is not None:
         used = max(used, slip.slip_largest_m / limits.slip_m)
-    unknown = tally.failed > 0 and not tally.overturned + tally.invalid
+    unknown = tally.failed > 0 and not tally.not_standing
     judged = None if unknown else gravest(against)
     actions = [ActionAnswer(name=EARTHQUAKE, answer=judged, utilisation=used)]
     if wind is not None:
@@ -122,7 +124,7 @@ def answer_of(
         rule=rule,
         sentence=_sentence(limits, answer, tally, against, slip),
         still=still,
-        **{name: tally[name] for name in (*BY_RULE, "overturned", "invalid", "runs")},
+        **{field.name: tally[field.name] for field in fields(ByRule)},
         exceeded=tuple(
             key for key in FIGURE_OF if key in tally.exceeded(limits) or (key == "slip_m" and slid_too_far)
         ),
@@ -193,46 +195,37 @@ def _of_the_set(
         group = max(groups, key=lambda group: len(group.beyond({})))
         most, place = len(group.beyond({})), where(request, group.first)
         yield NOT_FULFILLED, SAYS(what="overturned", tally=tally, motions=motions, most=most, place=place)
-    if tally.overturned + tally.invalid:
+    if tally.not_standing:
         return
-    for key in FIGURE_OF:
-        yield from _of_a_limit(key, request, motions, groups, ranged)
+    for key, figure in FIGURE_OF.items():
+        value, limit = tally[figure], getattr(request.limits, key)
+        low, high = (ranged and ranged[figure]) or (value, value)
+        if value is None or high <= limit:
+            continue
+        places = places_of(key, limit, (value, low, high))
+        used = [group.by_rule[figure] or 0.0 for group in groups]
+        group = groups[used.index(max(used))]
+        said = SAYS(
+            what="beyond a limit" if low > limit else "at a limit",
+            key=key,
+            motions=motions,
+            by_mean=motions >= MEAN_FROM,
+            amount=unit_of(key).text(value, figures=places),
+            between=span_in_words(key, low, high, places),
+            varies=bool(ranged) and low < high,
+            limit=limit,
+            clearance=SHORT_MILLIMETRES.text(limit),
+            place=where(request, group.first),
+            count=len(group.beyond({FOUND_FROM[key]: limit})),
+        )
+        yield NOT_FULFILLED if low > limit else NOT_SURE, said
     if ranged and ranged.overturned:
         yield NOT_SURE, SAYS(what="repetitions", ranged=ranged)
     if failed:
         yield NOT_SURE, SAYS(what="failed repetitions", failed=failed)
 
 
-def _of_a_limit(
-    key: str, request: SiteRequest, motions: int, groups: Sequence[RunGroup], ranged: RuleRange | None
-) -> Iterator[Reason]:
-    """Whether a limit is kept, by the set and by its repetitions."""
-    figure, limit = FIGURE_OF[key], getattr(request.limits, key)
-    value = rule_of(groups)[figure]
-    if value is None:
-        return
-    low, high = (ranged and ranged[figure]) or (value, value)
-    if high <= limit:
-        return
-    places = places_of(key, limit, (value, low, high))
-    group = max(groups, key=lambda group: group.by_rule[figure] or 0.0)
-    said = SAYS(
-        what="beyond a limit" if low > limit else "at a limit",
-        key=key,
-        motions=motions,
-        by_mean=motions >= MEAN_FROM,
-        amount=unit_of(key).text(value, figures=places),
-        between=span_in_words(key, low, high, places),
-        varies=bool(ranged) and low < high,
-        limit=limit,
-        clearance=SHORT_MILLIMETRES.text(limit),
-        place=where(request, group.first),
-        count=len(group.beyond({FOUND_FROM[key]: limit})),
-    )
-    yield NOT_FULFILLED if low > limit else NOT_SURE, said
-
-
-def of_further(request: SiteRequest, group: FurtherMotions) -> Iterator[Reason]:
+def _of_further(request: SiteRequest, group: FurtherMotions) -> Iterator[Reason]:
     """What the further motions for one container and friction say against it."""
     place = where(request, group)
     if group.failed:

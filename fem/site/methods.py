@@ -9,7 +9,6 @@ from contact.reference.rigid_block import RigidBlock
 from contact.stepping.modes import ROCKING
 from fem.case.validation import CaseError
 from fem.results.outcome import least_slide
-from fem.runtime.arrays import FloatArray
 from fem.seismic.action import SiteAction
 from fem.seismic.body import FloorAction, LooseBody, MethodQuantity, MethodRow, length_in_words
 from fem.seismic.methods import methods_of, rows_with_factors
@@ -65,20 +64,16 @@ def site_methods(
             )
             for row, factor in rows_with_factors(methods, action)
         ]
-    if inputs.wind_pressure_Pa is not None:
-        lightest = _lightest_of(bodies)
-        rows += [
-            _result(row, lightest, ("no run: wind", ""), None)
-            for row in wind_rows(
-                loose_body(lightest, inputs), inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu
-            )
-        ]
-    return tuple(rows)
+    lightest, under_wind = _under_wind(bodies, inputs)
+    return (*rows, *(_result(row, lightest, ("no run: wind", ""), None) for row in under_wind))
 
 
-def _lightest_of(bodies: Sequence[SiteBody]) -> SiteBody:
-    """The body with the least restoring moment, for which the wind is checked."""
-    return min(bodies, key=lambda body: body.mass_kg * body.support_width_m)
+def _under_wind(bodies: Sequence[SiteBody], inputs: SiteInputs) -> tuple[SiteBody, list[MethodRow]]:
+    """The body with the least restoring moment, for which the wind is checked where it is asked for."""
+    body, pressure = min(bodies, key=lambda one: one.mass_kg * one.support_width_m), inputs.wind_pressure_Pa
+    if pressure is None:
+        return body, []
+    return body, wind_rows(loose_body(body, inputs), pressure, gamma_mu=inputs.gamma_mu)
 
 
 def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | None:
@@ -87,21 +82,17 @@ def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | 
     Raises:
         CaseError: the container is higher than the rule for the wind holds.
     """
-    if inputs.wind_pressure_Pa is None:
-        return None
-    body = loose_body(_lightest_of(bodies), inputs)
     try:
-        rows = wind_rows(body, inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu)
+        _, rows = _under_wind(bodies, inputs)
     except ValueError as error:
         raise CaseError(f"[wind] {error}; leave the table out") from None
-    return max(row.utilisation for row in rows)
+    return max((row.utilisation for row in rows), default=None)
 
 
 def loose_body(body: SiteBody, inputs: SiteInputs) -> LooseBody:
     """The body with the least friction of the range."""
-    half, height = 0.5 * body.support_width_m, body.centroid_m
+    half, height, mu = 0.5 * body.support_width_m, body.centroid_m, min(inputs.mu_static)
     arm = body.mass_kg * (half**2 + height**2)
-    mu = min(inputs.mu_static)
     return LooseBody(
         block=RigidBlock(
             half_width=half,
@@ -129,18 +120,13 @@ def floor_action(
     ground = FloorAction.on_ground(site, velocity)
     if floor is None:
         return ground
-    known = np.array([0.0, *periods_s])
+    known, given = np.array([0.0, *periods_s]), floor.vertical_peak_m_s2
     values = np.array([floor.peak_m_s2, *floor.mean_m_s2])
-
-    def spectrum(periods: FloatArray) -> FloatArray:
-        return np.asarray(np.interp(periods, known, values))
-
-    given = floor.vertical_peak_m_s2
     return FloorAction(
         peak=floor.peak_m_s2,
         vertical_peak=ground.vertical_peak if given is None else given,
         peak_velocity=floor.peak_velocity_m_s,
-        spectrum=spectrum,
+        spectrum=lambda periods: np.asarray(np.interp(periods, known, values)),
         ground_peak=ground.ground_peak,
         in_building=True,
     )

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -109,21 +110,26 @@ def motion_target(request: SiteRequest, motions: Sequence[GroundMotion], longest
     if request.motions.source != "floor":
         return request.floor_target or request.action
     periods = periods_of_check(longest)
-
-    def mean(components: Sequence[tuple[float, FloatArray]]) -> tuple[float, ...]:
-        peak = float(np.mean([np.abs(values).max() for _, values in components]))
-        spectra = [
-            response_spectrum(step, values, periods).pseudo_acceleration_m_s2 for step, values in components
-        ]
-        return peak, *np.mean(spectra, axis=0).tolist()
-
+    along = [(motion.step, motion.horizontal) for motion in motions]
     upward = [(motion.step, motion.vertical) for motion in motions if motion.vertical is not None]
     return FloorSpectrum(
         periods=(RIGID_PERIOD_S, *periods.tolist()),
-        accelerations=mean([(motion.step, motion.horizontal) for motion in motions]),
-        vertical_accelerations=mean(upward) if upward else (),
+        accelerations=(_mean_peak(values for _, values in along), *_mean_spectrum(along, periods)),
+        vertical_accelerations=(_mean_peak(values for _, values in upward), *_mean_spectrum(upward, periods))
+        if upward
+        else (),
         ground=request.action,
     )
+
+
+def _mean_peak(components: Iterable[FloatArray]) -> float:
+    return float(np.mean([np.abs(values).max() for values in components]))
+
+
+def _mean_spectrum(components: Iterable[tuple[float, FloatArray]], periods: FloatArray) -> tuple[float, ...]:
+    """Of components with their steps, at 5 % damping."""
+    spectra = [response_spectrum(*component, periods).pseudo_acceleration_m_s2 for component in components]
+    return _numbers(np.mean(spectra, axis=0))
 
 
 def floor_motions(
@@ -345,44 +351,38 @@ def floor_result(
     request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], checked: MotionSetCheck
 ) -> FloorResult | None:
     """What the motions are on the floor of a building, or on a given floor: means over the set; None on the ground."""
+    found: dict[str, Any]
     if request.on_given_floor:
-        given, upward = floors[None], [floor.vertical for floor in floors[None] if floor.vertical is not None]
-        return FloorResult(
-            building=GIVEN_FLOORS[request.motions.source == "floor"],
-            peak_m_s2=float(np.mean([entry.peak for entry in given])),
-            peak_velocity_m_s=float(np.mean([entry.intensities["h"].peak_velocity_m_s for entry in given])),
-            mean_m_s2=_numbers(checked.horizontal.mean),
-            vertical_peak_m_s2=float(np.mean([np.abs(a).max() for a in upward])) if upward else None,
-            vertical_mean_m_s2=_numbers(checked.vertical.mean) if checked.vertical else (),
-        )
-    if (building := request.building) is None or None in floors:
+        motions, upward = floors[None], [one.vertical for one in floors[None] if one.vertical is not None]
+        found = {
+            "building": GIVEN_FLOORS[request.motions.source == "floor"],
+            "mean_m_s2": _numbers(checked.horizontal.mean),
+            "vertical_peak_m_s2": _mean_peak(upward) if upward else None,
+            "vertical_mean_m_s2": _numbers(checked.vertical.mean) if checked.vertical else (),
+        }
+    elif (building := request.building) is None or None in floors:
         return None
-    shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
-    modes = f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
-    if building.storeys is None:
-        beyond = ", which this one exceeds" * (building.building_period_s > ONE_MODE_TO_S)
-        modes = (
-            f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s{beyond}; no "
-            "model of the structure as 4.3.5.1 (2)P asks for it"
-        )
-    varied = {period: motions for period, motions in floors.items() if period is not None}
-    peaks = {
-        period: float(np.mean([motion.peak for motion in motions])) for period, motions in varied.items()
-    }
-    worst = max(peaks, key=lambda period: peaks[period])
-    motions = varied[worst]
-    spectra = [
-        response_spectrum(motion.step, motion.horizontal, checked.periods).pseudo_acceleration_m_s2
-        for motion in motions
-    ]
+    else:
+        shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
+        modes = f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
+        if building.storeys is None:
+            beyond = ", which this one exceeds" * (building.building_period_s > ONE_MODE_TO_S)
+            modes = (
+                f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s{beyond}; "
+                "no model of the structure as 4.3.5.1 (2)P asks for it"
+            )
+        motions = max(floors.values(), key=lambda varied: float(np.mean([one.peak for one in varied])))
+        found = {
+            "z_over_h": building.z_over_h,
+            "building": modes,
+            "building_periods_s": tuple(floors),
+            "damping_ratio": building.damping_ratio,
+            "mean_m_s2": _mean_spectrum([(one.step, one.horizontal) for one in motions], checked.periods),
+        }
     return FloorResult(
-        z_over_h=building.z_over_h,
-        building=modes,
-        building_periods_s=tuple(varied),
-        damping_ratio=building.damping_ratio,
-        peak_m_s2=peaks[worst],
+        peak_m_s2=float(np.mean([motion.peak for motion in motions])),
         peak_velocity_m_s=float(np.mean([motion.intensities["h"].peak_velocity_m_s for motion in motions])),
-        mean_m_s2=_numbers(np.mean(spectra, axis=0)),
+        **found,
     )
 
 

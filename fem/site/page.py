@@ -190,16 +190,27 @@ def draw_spectra(action: SiteActionResult, motions: MotionSet, floor: FloorResul
             else "the motions are taken as they are: nothing is demanded of their mean",
         )
         periods, gap = np.array(action.periods_s), 0.65
+        inside = (periods >= low) & (periods <= last)
         width = (style.WIDTH - style.LEFT - style.RIGHT - gap * (len(rows) - 1)) / len(rows)
         for k, (target, mean, name) in enumerate(rows):
-            of_motions = "spectrum_m_s2" if k == 0 else "vertical_spectrum_m_s2"
-            spectra = [motion[of_motions] for motion in motions.motions]
-            panel = _panel(figure, style.LEFT + k * (width + gap), 0.45, width, high)
-            _draw_spectrum(
-                panel, periods, target if fitted else (), mean, spectra, (low, last), f"{name} [m/s²]"
-            )
+            axes = _panel(figure, style.LEFT + k * (width + gap), 0.45, width, high)
+            if fitted:
+                axes.axvspan(low, last, color=style.SKY, alpha=0.12, linewidth=0, label="band")
+            look: dict[str, Any] = {"color": style.GREY, "linewidth": 0.6, "alpha": 0.7}
+            for n, motion in enumerate(motions.motions):
+                spectrum = motion["spectrum_m_s2" if k == 0 else "vertical_spectrum_m_s2"]
+                axes.plot(periods, spectrum, label=None if n else "motions", **look)
+            if fitted:
+                axes.plot(periods, target, color=style.BLACK, linestyle="--", label="target")
+                least = LEAST_RATIO * np.array(target)[inside]
+                axes.plot(periods[inside], least, color=style.VERMILLION, linestyle=":", label="90 %")
+            axes.plot(periods, mean, color=style.BLUE, linewidth=1.8, label="mean")
+            _period_axis(axes, list(TICKS))
+            axes.set_xlabel("period [s]")
+            axes.set_ylabel(f"{name} [m/s²]", labelpad=2)
+            axes.set_ylim(bottom=0.0)
             if k == 0:
-                style.legend_above(panel, columns=5)
+                style.legend_above(axes, columns=5)
         return style.svg_of(figure)
 
 
@@ -381,33 +392,6 @@ def _panel(figure: Figure, left: float, bottom: float, width: float, height: flo
     """Axes in a figure, by their place in inches."""
     wide, tall = figure.get_size_inches()
     return figure.add_axes((left / wide, bottom / tall, width / wide, height / tall))
-
-
-def _draw_spectrum(
-    axes: Axes,
-    periods: FloatArray,
-    target: Sequence[float],
-    mean: Sequence[float],
-    spectra: Sequence[Sequence[float]],
-    band: tuple[float, float],
-    label: str,
-) -> None:
-    if target:
-        axes.axvspan(*band, color=style.SKY, alpha=0.12, linewidth=0, label="band")
-    for k, spectrum in enumerate(spectra):
-        axes.plot(
-            periods, spectrum, color=style.GREY, linewidth=0.6, alpha=0.7, label="motions" if k == 0 else None
-        )
-    if target:
-        inside = (periods >= band[0]) & (periods <= band[1])
-        axes.plot(periods, target, color=style.BLACK, linestyle="--", label="target")
-        least = LEAST_RATIO * np.array(target)[inside]
-        axes.plot(periods[inside], least, color=style.VERMILLION, linestyle=":", label="90 %")
-    axes.plot(periods, mean, color=style.BLUE, linewidth=1.8, label="mean")
-    _period_axis(axes, list(TICKS))
-    axes.set_xlabel("period [s]")
-    axes.set_ylabel(label, labelpad=2)
-    axes.set_ylim(bottom=0.0)
 
 
 def _period_axis(axes: Axes, ticks: list[float]) -> None:

@@ -130,8 +130,38 @@ class SiteRequest:
         Raises:
             CaseError: a ground that the spectrum does not have.
         """
+        site = self.site
         try:
-            return _action_of(self.site, self.element_factor)
+            reference = site.reference_acceleration_m_s2
+            if site.spectrum == "EN1998-1":
+                shape = eurocode_shape(site.type or 1, site.ground or "")
+            elif site.spectrum == "DIN-NA-2011":
+                shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
+                reference = GERMAN_ZONES[site.zone or 0]
+            elif site.spectrum == "second-generation":
+                plateau = site.plateau_m_s2 or 0.0
+                reference = plateau / site.plateau_over_peak
+                shape = second_generation_shape(
+                    plateau=plateau,
+                    one_second=site.one_second_m_s2 or 0.0,
+                    periods=_three(site.end_periods_s),
+                    vertical_ratio=site.vertical_ratio or 0.0,
+                    ratio=site.plateau_over_peak,
+                )
+            else:
+                shape = SpectrumShape(
+                    soil_factor=site.soil_factor or 0.0,
+                    corner_periods=_three(site.corner_periods_s),
+                    vertical_ratio=site.vertical_ratio or 0.0,
+                    vertical_corner_periods=_three(site.vertical_corner_periods_s),
+                )
+            return SiteAction(
+                shape=shape,
+                reference_acceleration=reference or 0.0,
+                importance_factor=site.importance_factor,
+                element_importance_factor=self.element_factor,
+                topographic_factor=site.topographic_factor,
+            )
         except ValueError as error:
             raise CaseError(f"[site] {error}") from None
 
@@ -298,23 +328,21 @@ def load_site(
     def read(data: Mapping[str, Any], origin: Origin) -> SiteRequest:
         if not records and not allow_baseline:
             return _request(data, origin)
-        changed = _with_records(data, origin.folder, records) if records else dict(data)
+        changed = dict(data)
+        if records:
+            named = [
+                [as_named_from(origin.folder, name.strip()) for name in pair.split(",")] for pair in records
+            ]
+            motions = changed["motions"] = {**data.get("motions", {}), "files": named}
+            if motions.get("source") not in ("matched", "floor"):
+                motions["source"] = "records"
+            if max(map(len, named)) == 1:
+                motions["vertical"] = False
         if allow_baseline:  # refused as the key is, where nothing is matched
             changed["motions"] = {**changed.get("motions", {}), "allow_baseline": True}
         return _request(changed, replace(origin, text=toml_document(changed)))  # which the results keep
 
     return read_study(SITES.find(name_or_path), read)
-
-
-def _with_records(data: Mapping[str, Any], folder: Path, records: Sequence[str]) -> dict[str, Any]:
-    """The tables of a site file with these records as its motions."""
-    motions = dict(data.get("motions", {}))
-    if motions.get("source") not in ("matched", "floor"):
-        motions["source"] = "records"
-    motions["files"] = [[as_named_from(folder, name.strip()) for name in pair.split(",")] for pair in records]
-    if max(map(len, motions["files"])) == 1:
-        motions["vertical"] = False
-    return {**data, "motions": motions}
 
 
 def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = None) -> SiteRequest:
@@ -368,13 +396,6 @@ def _check(request: SiteRequest) -> None:
                 f"container: {what} not verified at a site, whose {why}; {way_out}, or run the motions one by one"
             )
     _ = request.action, request.variants, request.wind_pressure, request.floor_target
-    _check_floor(request)
-    if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
-        raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
-
-
-def _check_floor(request: SiteRequest) -> None:
-    """Refuse a floor whose motion is given twice, or with factors."""
     given = "[floor_spectrum]" if request.floor_spectrum is not None else '[motions] source = "floor"'
     if request.on_given_floor and request.building is not None:
         raise CaseError(
@@ -397,40 +418,8 @@ def _check_floor(request: SiteRequest) -> None:
             '[floor_spectrum] and [motions] source = "floor" both say how the floor moves; leave the spectrum out, or '
             'fit the records to it with source = "records" or "matched"'
         )
-
-
-def _action_of(site: SiteTable, element_factor: float) -> SiteAction:
-    """The action of a site; ValueError for a ground that the spectrum does not have."""
-    reference = site.reference_acceleration_m_s2
-    if site.spectrum == "EN1998-1":
-        shape = eurocode_shape(site.type or 1, site.ground or "")
-    elif site.spectrum == "DIN-NA-2011":
-        shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
-        reference = GERMAN_ZONES[site.zone or 0]
-    elif site.spectrum == "second-generation":
-        plateau = site.plateau_m_s2 or 0.0
-        reference = plateau / site.plateau_over_peak
-        shape = second_generation_shape(
-            plateau=plateau,
-            one_second=site.one_second_m_s2 or 0.0,
-            periods=_three(site.end_periods_s),
-            vertical_ratio=site.vertical_ratio or 0.0,
-            ratio=site.plateau_over_peak,
-        )
-    else:
-        shape = SpectrumShape(
-            soil_factor=site.soil_factor or 0.0,
-            corner_periods=_three(site.corner_periods_s),
-            vertical_ratio=site.vertical_ratio or 0.0,
-            vertical_corner_periods=_three(site.vertical_corner_periods_s),
-        )
-    return SiteAction(
-        shape=shape,
-        reference_acceleration=reference or 0.0,
-        importance_factor=site.importance_factor,
-        element_importance_factor=element_factor,
-        topographic_factor=site.topographic_factor,
-    )
+    if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
+        raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
 
 
 def _three(values: list[float] | None) -> tuple[float, float, float]:

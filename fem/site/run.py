@@ -62,7 +62,7 @@ from fem.site.runs import COLUMNS, CONFIRMING, KEYS, cases_of, cells_of
 from fem.site.stages import Stages
 from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import NamedStages, Runner, compute_many
-from fem.study.table import line_of, row_of
+from fem.study.table import line_of, row_of, table_text
 
 RUNS, PAGE = "runs.csv", "report.html"
 OF_A_MOTION = 75_000  #: numbers, in three files
@@ -123,7 +123,7 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
 
 
 def digest_of(stages: Stages) -> str:
-    """Equal for requests that give the same result."""
+    """The same of what is asked, quick or whole."""
     digest = site_hash(stages.request, stages.ground)
     return hash_of([digest, "quick"]) if stages.quick else digest
 
@@ -146,7 +146,8 @@ def _compute(stages: Stages, place: ResultFolder, runner: Runner) -> SiteResult:
     result = _result(stages, motions, answer)
     if result.status == COMPLETED:
         if stages.runs:
-            place.write(RUNS, stages.table())
+            rows = (stages.rows[key].values() for key in stages.in_order())
+            place.write(RUNS, table_text(COLUMNS, rows))
         place.write(PAGE, site_report(place.path, result))
     return result
 
@@ -164,26 +165,20 @@ def answered(
 ) -> SiteAnswer | None:
     """Compute the runs that are missing; None where it was interrupted.
 
-    Args:
-        stages: asked for.
-        motions: the set.
-        runner: computes them.
-        log: of the runs.
-        value: of the key that `size` varies, in the first column of its log. It is decided without a margin, and
-            without what comes after the first that speaks against it.
+    A `value` of the key that `size` varies stands in the first column of its log. It is decided without a margin, and
+    without what comes after the first that speaks against it.
     """
     request = stages.request
     again: list[ConfirmedRun] = []
     left_out = QUICK if stages.quick and not stages.rests else ""
     varied = {} if value is None else {"value": float}
-    columns = varied | COLUMNS
 
     def now() -> SiteAnswer:
         beside = stages.beside()
         return answer_of(request, motions, stages.in_order(), confirmed=again, left_out=left_out, **beside)
 
-    names = ["the set", "its repetitions"] + [FURTHER_ONES] * stages.has_further
     scans = not (stages.quick or varied)
+    names = ["the set", "its repetitions", *[FURTHER_ONES] * stages.has_further]
     names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
     told = NamedStages([] if varied else names, runner.reporter)  # of a value of `size` none is named
 
@@ -207,7 +202,7 @@ def answered(
             told.begin(name, count, weight=LOOSE if name == FURTHER_ONES else 1.0)
 
     def note(line: str) -> None:
-        row = row_of(columns, line)
+        row = row_of(varied | COLUMNS, line)
         row.pop("value", None)
         stages.add(row)
 
@@ -216,7 +211,7 @@ def answered(
         LoggedRuns(
             what="runs",
             path=log,
-            columns=columns,
+            columns=varied | COLUMNS,
             make=cases,
             model_of=lambda key: key.model,
             key=lambda key: (value, *cells_of(key)) if varied else cells_of(key),

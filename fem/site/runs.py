@@ -95,39 +95,39 @@ def still(case: Case, model: str) -> Case:
 
 
 def bodies_of(request: SiteRequest) -> tuple[SiteBody, ...]:
-    """Every container that is run; raises as `body_of`."""
-    return tuple(body_of(*name, case) for name, case in request.variants.items())
-
-
-def body_of(mass: str, elevation: str, case: Case) -> SiteBody:
-    """Mass, dimensions and rocking parameters of a container.
+    """Mass, dimensions and rocking parameters of every container that is run.
 
     Raises:
-        CaseError, MeshError: it cannot be built.
+        CaseError, MeshError: one cannot be built.
     """
-    try:
-        mesh = build_container(case)
-    except ValueError as error:
-        if mass == EMPTY:
-            raise CaseError(f"empty_mass_kg: {error}") from None
-        raise
-    static = static_checks_of(case, mesh, 0.0)
-    return SiteBody(
-        mass=mass,
-        elevation=elevation,
-        mass_kg=mesh.mass,
-        centroid_m=static.centroid,
-        inertia_kg_m2=static.inertia,
-        support_width_m=static.width,
-        width_m=case.container.width_m,
-        height_m=case.container.total_height,
-        depth_m=case.container.depth_m,
-        gravity_m_s2=case.gravity_m_s2,
-        slenderness_angle_rad=static.slenderness_angle,
-        frequency_parameter_1_s=static.frequency_parameter,
-        uplift_acceleration_m_s2=static.uplift_acceleration,
-        housner_restitution=static.housner_restitution,
-    )
+    bodies = []
+    for (mass, elevation), case in request.variants.items():
+        try:
+            mesh = build_container(case)
+        except ValueError as error:
+            if mass == EMPTY:
+                raise CaseError(f"empty_mass_kg: {error}") from None
+            raise
+        static = static_checks_of(case, mesh, 0.0)
+        bodies.append(
+            SiteBody(
+                mass=mass,
+                elevation=elevation,
+                mass_kg=mesh.mass,
+                centroid_m=static.centroid,
+                inertia_kg_m2=static.inertia,
+                support_width_m=static.width,
+                width_m=case.container.width_m,
+                height_m=case.container.total_height,
+                depth_m=case.container.depth_m,
+                gravity_m_s2=case.gravity_m_s2,
+                slenderness_angle_rad=static.slenderness_angle,
+                frequency_parameter_1_s=static.frequency_parameter,
+                uplift_acceleration_m_s2=static.uplift_acceleration,
+                housner_restitution=static.housner_restitution,
+            )
+        )
+    return tuple(bodies)
 
 
 def at_rest_by_the_bound(request: SiteRequest) -> dict[tuple[str, str], BodyAtRest]:

@@ -159,11 +159,7 @@ def size_axis(
 
 
 def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
-    """The request at a value of the axis; of a square container the other side follows.
-
-    Raises:
-        CaseError: the value cannot be used.
-    """
+    """The request at a value of the axis, CaseError if it cannot be; of a square container the other side follows."""
     changed = request.with_value(axis.key, round(value) if axis.key == BOXES else value)
     for key in followers(request, axis.key):
         changed = changed.with_value(key, value)
@@ -171,11 +167,7 @@ def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
 
 
 def _build(request: SiteRequest, axis: SizeAxis, value: float) -> None:
-    """Build the containers at a value, to see that it can be done.
-
-    Raises:
-        CaseError: it cannot.
-    """
+    """Build the containers at a value, to see that it can be done; CaseError where it cannot."""
     try:
         bodies_of(at(request, axis, value))
     except (CaseError, MeshError) as error:
@@ -268,49 +260,35 @@ def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "
 def size_result(
     axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
 ) -> SizeResult:
-    """Which values fulfil the rule, from the answers by value."""
-    points = tuple(
+    """Which values fulfil the rule, from the answers by value; a sentence tells what fails beyond, and the islands."""
+    points: tuple[dict[str, Any], ...] = tuple(
         {"value": value, "fails": _reason(answer)} | {name: answer[name] for name in SAME}
         for value, answer in sorted(answers.items())
     )
-    intervals, words = _fulfilled_intervals(points), sentence(axis, points)
-    return replace(
-        begun or size_asked(axis),
-        status=COMPLETED,
-        answer=words,
-        value=_wanted_value(axis, intervals),
-        intervals=tuple(intervals),
-        sentence=words,
-        points=points,
-    )
-
-
-def _fulfilled_intervals(points: Sequence[Mapping[str, Any]]) -> list[tuple[float, float]]:
-    """Stretches of neighbouring values tried that all fulfil the rule, by rising value."""
     said = {point["value"]: "fulfilled" if point["fulfilled"] else "" for point in points}
-    return [(low, high) for what, low, high in stretches(said) if what]
-
-
-def _wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> float | None:
-    """The end of the stretch that reaches the good end of the range; an island elsewhere does not count."""
+    intervals = [(low, high) for what, low, high in stretches(said) if what]
+    wanted = None  # the end of the stretch that reaches the good end of the range; an island elsewhere does not count
     if axis.wanted == "least" and intervals and intervals[-1][1] == axis.values[-1]:
-        return intervals[-1][0]
-    if axis.wanted == "largest" and intervals and intervals[0][0] == axis.values[0]:
-        return intervals[0][1]
-    return None
-
-
-def sentence(axis: SizeAxis, points: Sequence[Mapping[str, Any]]) -> str:
-    """The answer in one sentence: the value, what fails beyond it, and the islands."""
-    intervals = _fulfilled_intervals(points)
-    return text_of(
+        wanted = intervals[-1][0]
+    elif axis.wanted == "largest" and intervals and intervals[0][0] == axis.values[0]:
+        wanted = intervals[0][1]
+    words = text_of(
         "size_answer.txt.j2",
         axis=axis,
         points=points,
         intervals=intervals,
-        wanted=_wanted_value(axis, intervals),
+        wanted=wanted,
         value=partial(_value, axis=axis),
         stretches=partial(_stretches, axis=axis),
+    )
+    return replace(
+        begun or size_asked(axis),
+        status=COMPLETED,
+        answer=words,
+        value=wanted,
+        intervals=tuple(intervals),
+        sentence=words,
+        points=points,
     )
 
 

@@ -45,7 +45,6 @@ from fem.site.result import (
 )
 from fem.site.rule import MotionSlips, RunGroup, governing_groups, groups_of, rule_of, runs_by_factor
 from fem.site.runs import (
-    COLUMNS,
     FOUND,
     KEYS,
     NOT_COMPUTED,
@@ -55,7 +54,6 @@ from fem.site.runs import (
     key_of,
 )
 from fem.study.runner import Row, Runner
-from fem.study.table import table_text
 from fem.study.workers import hand_out
 
 #: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
@@ -94,7 +92,7 @@ class Stages:
     ]  #: by weight and elevation, those that a bound may show at rest
     motions: dict[str, GroundMotion]  #: on the floor, and further ones, by the stems of their files
     folder: Path  #: that holds the motions
-    quick: bool = False  #: the set and its repetitions alone
+    quick: bool = False  #: the set and its repetitions alone, but of a container that rests in the whole set
     runs: dict[RunKey, SiteRun] = field(default_factory=dict)  #: so far
     rows: dict[RunKey, Row] = field(default_factory=dict)  #: of them in the log
     still: set[RunKey] = field(default_factory=set)  #: those at rest that were not computed
@@ -108,11 +106,6 @@ class Stages:
         cls, request: SiteRequest, folder: Path, *, allow_outside: bool = False, quick: bool = False
     ) -> "Stages":
         """For a request whose runs read their motions from a folder.
-
-        Args:
-            request, folder: what is asked, and where the motions are.
-            allow_outside: take records from outside the folder of the site file.
-            quick: leave out what comes after the repetitions, but of a container that rests in the whole set.
 
         Raises:
             CaseError, MeshError: a record or a container that cannot be used.
@@ -165,10 +158,6 @@ class Stages:
             return STAGES.index(key.stage), key.factor, *container, *friction, key.motion, -key.vertical_sign
 
         return {key: self.runs[key] for key in sorted(self.runs, key=place)}
-
-    def table(self) -> str:
-        """`runs.csv`: a row a run, in the same order."""
-        return table_text(COLUMNS, (self.rows[key].values() for key in self.in_order()))
 
     def found(self, keys: Iterable[RunKey]) -> list[SiteRun]:
         """The runs of these keys, in their order, as far as they are there."""

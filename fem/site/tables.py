@@ -90,8 +90,11 @@ def _foreign(site: Any) -> list[str]:
     return [key for key in OF_SPECTRA if key not in own and getattr(site, key) is not None]
 
 
-def _rising(values: Any) -> bool:
-    return values is None or all(low < high for low, high in pairwise(values))
+def _rising_periods(key: str) -> Rule:
+    def rising(site: Any) -> bool:
+        return all(low < high for low, high in pairwise(getattr(site, key) or ()))
+
+    return Rule(f"site.{key}", rising, f"must rise, got {{{key}}}")
 
 
 def _rises(name: str, key: str) -> Rule:
@@ -162,16 +165,8 @@ class SiteTable(CaseTable):
                 'spectrum = "custom"'
             ),
         ),
-        Rule(
-            "site.corner_periods_s",
-            lambda site: _rising(site.corner_periods_s),
-            "must rise, got {corner_periods_s}",
-        ),
-        Rule(
-            "site.vertical_corner_periods_s",
-            lambda site: _rising(site.vertical_corner_periods_s),
-            "must rise, got {vertical_corner_periods_s}",
-        ),
+        _rising_periods("corner_periods_s"),
+        _rising_periods("vertical_corner_periods_s"),
     )
 
 

@@ -1,13 +1,13 @@
 """The motions of a site: second horizontal components, and floors of buildings with storeys."""
 
 import json
-from functools import cache
 
 import numpy as np
 import pytest
-from small_site import LEAST
+from small_site import LEAST, three_motions, three_records
 
 from fem.case.validation import CaseError
+from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.floor import floor_motion, storey_modes
 from fem.seismic.ground_motion import in_whole_g, write_at2
@@ -23,25 +23,8 @@ def request(folder, *tables):
     return load_site(place)
 
 
-@cache
-def made(action):
-    """Three motions with both horizontal components, which most tests write as records."""
-    return artificial_motions(action, count=3, seed=5, second=1.0)
-
-
-def three_records(folder, letters, every=1):
-    """Files of three motions at 0.005 s, or of every so many samples, a name for each letter."""
-    action = request(folder).action
-    names = []
-    for number, motion in enumerate(made(action)):
-        names.append([])
-        for letter in letters:
-            names[-1].append(f"r{number}_{letter}.at2")
-            described = f"EVENT {number}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
-            write_at2(
-                folder / names[-1][-1], every * motion.step, 0.5 * motion.lettered[letter][::every], described
-            )
-    return json.dumps(names)
+#: of the least site
+ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=1.6)
 
 
 def test_artificial_motions_have_a_second_component_of_the_share_asked_for(tmp_path):
@@ -58,8 +41,9 @@ def test_artificial_motions_have_a_second_component_of_the_share_asked_for(tmp_p
 
 
 def test_a_third_file_of_a_record_is_its_second_component(tmp_path):
-    asked = request(tmp_path, f'[motions]\nsource = "records"\nfiles = {three_records(tmp_path, "hvt")}')
-    own = made(asked.action)
+    names = three_records(tmp_path, ACTION, "hvt")
+    asked = request(tmp_path, f'[motions]\nsource = "records"\nfiles = {names}')
+    own = three_motions(asked.action)
     for recorded, motion in zip(ground_motions(asked, 4.0), own, strict=True):
         factor = recorded.factor  # one for all components
         np.testing.assert_allclose(recorded.second, 0.5 * factor * motion.second, rtol=1e-9, atol=1e-9)
@@ -69,21 +53,17 @@ def test_a_third_file_of_a_record_is_its_second_component(tmp_path):
 
 
 def test_records_of_a_coarse_step_are_read_between_their_samples(tmp_path):
-    names = three_records(
-        tmp_path, "h", every=4
-    )  # 0.02 s apart: the check of a set begins at a period of 0.02 s
+    # 0.02 s apart: the check of a set begins at a period of 0.02 s
+    names = three_records(tmp_path, ACTION, "h", every=4)
     asked = request(tmp_path, f'[motions]\nsource = "floor"\nvertical = false\nfiles = {names}')
-    motion, curve = (
-        ground_motions(asked, 4.0)[0],
-        artificial_motions(asked.action, count=1, seed=5)[0].horizontal[::4],
-    )
+    motion, curve = ground_motions(asked, 4.0)[0], three_motions(ACTION)[0].horizontal[::4]
     assert motion.step == 0.01
     np.testing.assert_allclose(motion.horizontal[::2], 0.5 * curve, atol=1e-9)
     np.testing.assert_allclose(motion.horizontal[1::2], 0.25 * (curve[1:] + curve[:-1]), atol=1e-9)
 
 
 def test_matched_records_have_their_second_component_matched_to_its_share(tmp_path):
-    names = three_records(tmp_path, "hvt")
+    names = three_records(tmp_path, ACTION, "hvt")
     asked = request(tmp_path, f'[motions]\nsource = "matched"\nsecond_component = 0.7\nfiles = {names}')
     found = check_set(ground_motions(asked, 4.0), asked.action, second=0.7)
     assert found.valid and found.second_least_ratio > 0.9
@@ -91,7 +71,7 @@ def test_matched_records_have_their_second_component_matched_to_its_share(tmp_pa
 
 def with_a_fling(folder, seconds):
     """The same motions without their vertical components; the first ends elsewhere, by a sine pulse of 0.8 s."""
-    names = [names[:1] for names in json.loads(three_records(folder, "h"))]
+    names = [names[:1] for names in json.loads(three_records(folder, ACTION, "h"))]
     times = 0.005 * np.arange(round(seconds / 0.005))
     pulse = np.where(times < 0.8, 3.4 * np.sin(2.0 * np.pi * times / 0.8), 0.0)
     write_at2(folder / names[0][0], 0.005, in_whole_g(pulse), "EVENT 0, 1/1/20, STATION 0, 090")
@@ -144,10 +124,10 @@ def test_the_motions_of_a_site_fit_the_given_spectrum_of_the_floor_and_no_buildi
 
 
 def test_records_of_a_floor_are_taken_as_they_are_and_further_motions_fit_their_mean(tmp_path):
-    names = three_records(tmp_path, "hv")
+    names = three_records(tmp_path, ACTION)
     asked = request(tmp_path, f'[motions]\nsource = "floor"\nfiles = {names}\nsecond_component = 0.0')
     ground = ground_motions(asked, 4.0)
-    (first, *_) = made(asked.action)
+    (first, *_) = three_motions(asked.action)
     np.testing.assert_allclose(ground[0].horizontal, 0.5 * first.horizontal, rtol=1e-12)
     assert all(motion.factor == 1.0 for motion in ground)
     target = motion_target(asked, ground, 4.0)

@@ -4,11 +4,12 @@ import json
 import re
 
 import pytest
+from small_site import three_records
 
 from fem.__main__ import main
 from fem.records.files import read_record
 from fem.seismic.artificial import artificial_motions
-from fem.seismic.ground_motion import write_at2, write_csv
+from fem.seismic.ground_motion import write_csv
 from fem.site.motions import ground_motions
 from fem.site.request import load_site
 from fem.site.run import run_site
@@ -174,21 +175,8 @@ def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path, brief):
     assert any("4.3.5.2" in method.source for method in result.methods)
 
 
-def records(folder, *, scale=1.0):
-    """Three pairs of record files, sampled at 0.01 s."""
-    action = load_site("site").action
-    made = artificial_motions(action, count=3, seed=5)
-    names = []
-    for number, motion in enumerate(made):
-        pair = []
-        for letter, component in motion.lettered.items():
-            name = f"r{number}_{letter}.at2"
-            described = f"EVENT {number}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
-            values = scale * component
-            write_at2(folder / name, motion.step, values / 9.80665 * 9.80665, described)
-            pair.append(name)
-        names.append(pair)
-    return f'source = "records"\nfiles = {json.dumps(names)}'
+def records(folder, *, scale=0.5):
+    return f'source = "records"\nfiles = {three_records(folder, load_site("site").action, scale=scale)}'
 
 
 def test_records_are_scaled_to_the_site(tmp_path, brief):

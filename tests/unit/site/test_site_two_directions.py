@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from site_example import RUN, example
+from small_site import LEAST
 
 from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import answer_of
@@ -12,35 +13,20 @@ from fem.site.rule import groups_of
 from fem.site.stages import REPETITIONS, Stages
 from fem.study.driver import runner_of
 
-SITE = """
-container = "seed_stack"
-[site]
-ground = "D"
-reference_acceleration_m_s2 = 2.8
-[motions]
-count = 3
-{motions}
-[friction]
-mu_static = [0.2, 0.4]
-[limits]
-slip_m = {limit}
-{building}
-"""
+SITE = LEAST.replace("1.6", "2.8").replace("0.3,", "0.2,").replace("0.1", "{limit}")
+SITE += "[motions]\ncount = 3\n{motions}\n{building}"
 
 
-def slid(folder, *, limit=0.2, motions="", building="", container=""):
+def slid(folder, **asked):
     """What stages find, and the motions of the floors."""
-    stages = stages_of(folder, limit=limit, motions=motions, building=building, container=container)
+    stages = stages_of(folder, **asked)
     return stages.beside()["two_directions"], stages.floors
 
 
-def stages_of(folder, *, limit=0.2, motions="", building="", container=""):
+def stages_of(folder, *, limit=0.2, motions="", building=""):
     place = folder / "hall.toml"
     place.write_text(SITE.format(limit=limit, motions=motions, building=building))
-    request = load_site(place)
-    for key, value in dict(part.split("=") for part in container.split()).items():
-        request = request.with_value(key, float(value))
-    return Stages.of(request, folder)
+    return Stages.of(load_site(place), folder)
 
 
 def test_the_largest_slip_of_the_set_is_found_with_its_friction_and_motion(tmp_path):
@@ -70,7 +56,7 @@ def test_further_motions_have_a_second_component_and_their_own_slips(tmp_path):
     keys = stages.of_further(groups_of(own)[:1], 2)
     with runner_of(jobs=1) as runner:
         stages._make(runner, keys)
-    stages.rows.runs.update({key: replace(run, **vars(key)) for key in keys})
+    stages.runs.update({key: replace(run, **vars(key)) for key in keys})
     slips = stages.beside()["slips_of_further"]
     first = keys[0]
     pair = first.mu_static, first.mu_kinetic
@@ -93,27 +79,22 @@ def test_of_the_periods_of_a_building_the_worst_counts(tmp_path):
     assert found.slip_largest_m == max(slips.values())
 
 
-def answer_beside(stages):
-    """The answer where all runs of the set stand, and nothing else is asked for."""
-    run = replace(RUN, mass="full", rotation_ratio=0.0, max_slip_m=0.0, outcome="rest")
-    runs = {key: replace(run, **vars(key)) for key in stages.of_set()}
-    return answer_of(stages.request, example()[0].set, runs, **stages.beside())
-
-
 @pytest.mark.parametrize(
-    ("motions", "container", "words"),
+    ("motions", "changed", "words"),
     [
-        ("", "floor.slope_percent=2", "is not computed on a sloping floor"),
-        ("second_component = 0.0", "motions.second_component=1", "have no second horizontal component"),
-        ("second_component = 0.0", "floor.slope_percent=2", ""),
+        ("", {"floor.slope_percent": 2.0}, "is not computed on a sloping floor"),
+        ("second_component = 0.0", {"motions.second_component": 1.0}, "have no second horizontal component"),
+        ("second_component = 0.0", {"floor.slope_percent": 2.0}, ""),
     ],
 )
-def test_slip_in_two_directions_that_is_not_known_is_not_sure(tmp_path, motions, container, words):
+def test_slip_in_two_directions_that_is_not_known_is_not_sure(tmp_path, motions, changed, words):
     """Unless `second_component` = 0 asks for motion in a plane."""
     stages = stages_of(tmp_path, limit=5.0, motions=motions)
-    for key, value in dict(part.split("=") for part in container.split()).items():
-        stages = replace(stages, request=stages.request.with_value(key, float(value)))
-    found = answer_beside(stages)
+    for key, value in changed.items():
+        stages = replace(stages, request=stages.request.with_value(key, value))
+    run = replace(RUN, mass="full", rotation_ratio=0.0, max_slip_m=0.0, outcome="rest")
+    runs = {key: replace(run, **vars(key)) for key in stages.of_set()}  # all stand, nothing else is asked for
+    found = answer_of(stages.request, example()[0].set, runs, **stages.beside())
     told = [reason for reason in found.reasons if "horizontal component" in reason]
     assert len(told) == bool(words) and all(words in reason for reason in told)
     assert found.answer == ("not sure" if words else "fulfilled")
