@@ -407,8 +407,14 @@ def impact(
         rates = rates_after_impact(stack, before, other, state)
         after = state.copy()
         after[1], after[3] = rates
-        jump = zip(velocities(stack, other, after), before, strict=True)
-        impulses = carried(other, normals(stack, other, state, Motion(*(a - b for a, b in jump)), 0j))
+        now = velocities(stack, other, after)
+        jump = Motion(
+            now.lower - before.lower,
+            now.lower_spin - before.lower_spin,
+            now.upper - before.upper,
+            now.upper_spin - before.upper_spin,
+        )
+        impulses = carried(other, normals(stack, other, state, jump, 0j))
         pushes = min(impulses) >= -ROUNDING * speed * stack.mass * stack.lower.height
         if _opens(other, rates, shut, -ROUNDING * speed) and pushes:
             break
