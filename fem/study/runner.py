@@ -108,11 +108,9 @@ class Runner:
                     if done < total:
                         self.reporter.tell(told)
                         now = time.perf_counter()
-                        first = first or (done, now)
-                        if (
-                            not foretold and now > first[1] + MEASURED_S
-                        ):  # said once, at the rate of the first seconds
-                            foretold, rest = True, total - done
+                        first = first or ((done, now) if done else None)
+                        if first and not foretold and now > first[1] + MEASURED_S and done > first[0]:
+                            foretold, rest = True, total - done  # said once, at the rate of the first seconds
                             seconds = rest * (now - first[1]) / (done - first[0])
                             say_expected(self.reporter, f"{rest} more {what}", seconds)
         finally:
