@@ -72,7 +72,7 @@ MOST_FILES = 25  #: in one folder
 #: third-party package -> where it may be imported
 DOORS = {
     "skfem": {"fem/solid/assembly.py"},
-    "pyvista": {"fem/render", "fem/results/grid.py", "fem/results/reader.py"},
+    "pyvista": {"fem/render", "fem/results/fields.py", "fem/results/reader.py"},
     "numba": {
         "contact",
         "fem/solid/elasticity.py",
@@ -97,7 +97,6 @@ LOADING_LATE = {
     "fem/run/run.py",
     "fem/results/fields.py",
     "fem/results/history.py",
-    "fem/results/reader.py",
     "fem/run/compute.py",
     "fem/site/motions.py",
     "mesh/files.py",

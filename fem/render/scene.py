@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyvista
 
-from fem.results.fields import STOP, Frame
-from fem.results.grid import spatial
+from fem.results.fields import STOP, Frame, spatial
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.edges import chained, outline_edges
 

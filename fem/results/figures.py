@@ -7,7 +7,9 @@ put together in `fem.run.verdict`. SI units, named in the keys; rotation > 0 tow
 container to +x.
 """
 
-from dataclasses import KW_ONLY, dataclass
+# ruff: noqa: RUF009  (`shown` makes a field, not a value)
+
+from dataclasses import KW_ONLY, dataclass, field, fields
 from enum import Flag, auto
 from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints
 
@@ -67,6 +69,11 @@ class Shown:
         return self.unit.text(value, reach, bare=bare)
 
 
+def shown(*how: Any, **more: Any) -> Any:
+    """A field that a run may lack, and how people are shown it: what `Shown` takes."""
+    return field(default=None, metadata={"shown": Shown(*how, **more)})
+
+
 @dataclass(frozen=True, kw_only=True)
 class BoxFigures(JsonBlock, Generic[ValueT]):
     """What one box of a loose stack shows; slip and opening over what is below it."""
@@ -96,121 +103,95 @@ class Figures(JsonBlock, Generic[ValueT]):
     """The figures that a run has, or a band as [low, high]; None where one was not reached or is not known."""
 
     #: largest |rotation|
-    max_rotation_rad: Annotated[
-        ValueT | None, Shown("largest rotation", units.DEGREES, COLUMN | SUMMARY | BRIEF)
-    ] = None
+    max_rotation_rad: ValueT | None = shown("largest rotation", units.DEGREES, COLUMN | SUMMARY | BRIEF)
     #: largest |rotation| over the slenderness angle
-    rotation_ratio: Annotated[ValueT | None, Shown("rotation ratio", units.RATIO, TABLES | KEY | MAP)] = None
+    rotation_ratio: ValueT | None = shown("rotation ratio", units.RATIO, TABLES | KEY | MAP)
     #: largest |slip|
-    max_slip_m: Annotated[
-        ValueT | None,
-        Shown("largest slip", MM, TABLES | READ | BRIEF | KEY, "joint.max_slip", head="slip", lowest=True),
-    ] = None
+    max_slip_m: ValueT | None = shown(
+        "largest slip", MM, TABLES | READ | BRIEF | KEY, "joint.max_slip", head="slip", lowest=True
+    )
     #: at the end
-    residual_slip_m: Annotated[
-        ValueT | None,
-        Shown(
-            *("slip at the end", MM, TABLES | READ | BRIEF, "joint.slip"),
-            head="residual",
-            map_words="slip left at the end",
-            lowest=True,
-        ),
-    ] = None
+    residual_slip_m: ValueT | None = shown(
+        "slip at the end",
+        MM,
+        TABLES | READ | BRIEF,
+        "joint.slip",
+        head="residual",
+        map_words="slip left at the end",
+        lowest=True,
+    )
     #: the part of the slip at the end that was moved while nothing touched the floor
-    slip_in_air_m: Annotated[
-        ValueT | None,
-        Shown("slip moved in the air", MM, COLUMN | BAND | SUMMARY, "joint.slip_in_air", lowest=True),
-    ] = None
+    slip_in_air_m: ValueT | None = shown(
+        "slip moved in the air", MM, COLUMN | BAND | SUMMARY, "joint.slip_in_air", lowest=True
+    )
     #: of the time with a rotation above 0.01 of the slenderness angle, the share without any contact force
-    flight_share: Annotated[
-        ValueT | None, Shown("in the air while it rocks", units.RATIO, COLUMN | BAND | READ)
-    ] = None
+    flight_share: ValueT | None = shown("in the air while it rocks", units.RATIO, COLUMN | BAND | READ)
     #: over the last full cycle of a harmonic drive
-    slip_peak_to_peak_m: Annotated[ValueT | None, Shown("slip, peak to peak", MM, COLUMN)] = None
+    slip_peak_to_peak_m: ValueT | None = shown("slip, peak to peak", MM, COLUMN)
     #: total
-    slip_travel_m: Annotated[
-        ValueT | None, Shown("path of slip", MM, COLUMN | BAND | SUMMARY, "joint.slip_travel", lowest=True)
-    ] = None
+    slip_travel_m: ValueT | None = shown(
+        "path of slip", MM, COLUMN | BAND | SUMMARY, "joint.slip_travel", lowest=True
+    )
     #: largest |velocity| of the slip, while every loaded point slides
-    max_slip_velocity_m_s: Annotated[
-        ValueT | None,
-        Shown(
-            *("largest sliding velocity", units.VELOCITY, TABLES | READ, "joint.max_slip_velocity"),
-            head="velocity",
-            lowest=True,
-        ),
-    ] = None
-    max_uplift_m: Annotated[
-        ValueT | None,
-        Shown("largest uplift", MM, TABLES | READ | BRIEF, "track.max_uplift", head="uplift", lowest=True),
-    ] = None
+    max_slip_velocity_m_s: ValueT | None = shown(
+        "largest sliding velocity",
+        units.VELOCITY,
+        TABLES | READ,
+        "joint.max_slip_velocity",
+        head="velocity",
+        lowest=True,
+    )
+    max_uplift_m: ValueT | None = shown(
+        "largest uplift", MM, TABLES | READ | BRIEF, "track.max_uplift", head="uplift", lowest=True
+    )
     #: permanent, where the floor is crushed; None: it does not crush. It holds `valid`, and is no prediction
-    max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND)] = None
+    max_indentation_m: ValueT | None = shown("indentation of the floor", MM, BAND)
     #: no corner has sunk in further than the law of its contact holds
-    valid: Annotated[bool | None, Shown("valid", units.COUNT, COLUMN)] = None
+    valid: bool | None = shown("valid", units.COUNT, COLUMN)
     #: rotation at the end; None of what overturned, or turns about one side
-    tilt_rad: Annotated[
-        ValueT | None,
-        Shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, lowest=True),
-    ] = None
-    impacts: Annotated[
-        int | None, Shown("impacts", units.WHOLE, COLUMN | READ, "track.impacts", below="first_uplift_s")
-    ] = None
+    tilt_rad: ValueT | None = shown("tilt at the end", units.DEGREES, COLUMN | BAND | SUMMARY, lowest=True)
+    impacts: int | None = shown(
+        "impacts", units.WHOLE, COLUMN | READ, "track.impacts", below="first_uplift_s"
+    )
     #: a base gap opens
-    first_opening_s: Annotated[
-        ValueT | None, Shown("first opening", units.SECONDS, COLUMN, "track.first_opening")
-    ] = None
+    first_opening_s: ValueT | None = shown("first opening", units.SECONDS, COLUMN, "track.first_opening")
     #: a side carries nothing
-    first_uplift_s: Annotated[
-        ValueT | None, Shown("first uplift", units.SECONDS, COLUMN | READ, "track.first_uplift")
-    ] = None
-    first_impact_s: Annotated[
-        ValueT | None, Shown("first impact", units.SECONDS, COLUMN, "track.first_impact")
-    ] = None
-    overturned_at_s: Annotated[
-        ValueT | None, Shown("overturned at", units.SECONDS, COLUMN | MAP, "track.overturned_at")
-    ] = None
+    first_uplift_s: ValueT | None = shown("first uplift", units.SECONDS, COLUMN | READ, "track.first_uplift")
+    first_impact_s: ValueT | None = shown("first impact", units.SECONDS, COLUMN, "track.first_impact")
+    overturned_at_s: ValueT | None = shown(
+        "overturned at", units.SECONDS, COLUMN | MAP, "track.overturned_at"
+    )
     #: it rocked and stands again at the end
-    restored: Annotated[bool | None, Shown("restored", units.COUNT, COLUMN)] = None
-    restitution_first: Annotated[
-        ValueT | None, Shown("restitution, first impact", units.COUNT, COLUMN | SUMMARY)
-    ] = None
-    max_corner_force_N: Annotated[
-        ValueT | None,
-        Shown(
-            *(
-                "largest corner force",
-                units.KILONEWTONS,
-                COLUMN | BAND | READ | BRIEF,
-                "track.max_corner_force",
-            ),
-            below="max_uplift_m",
-            impact=True,
-            window="corner_force_window_s",
-        ),
-    ] = None
+    restored: bool | None = shown("restored", units.COUNT, COLUMN)
+    restitution_first: ValueT | None = shown("restitution, first impact", units.COUNT, COLUMN | SUMMARY)
+    max_corner_force_N: ValueT | None = shown(
+        "largest corner force",
+        units.KILONEWTONS,
+        COLUMN | BAND | READ | BRIEF,
+        "track.max_corner_force",
+        below="max_uplift_m",
+        impact=True,
+        window="corner_force_window_s",
+    )
     #: relative to the floor
-    max_top_displacement_m: Annotated[
-        ValueT | None, Shown("displacement of the top", MM, COLUMN | BAND | SUMMARY)
-    ] = None
+    max_top_displacement_m: ValueT | None = shown("displacement of the top", MM, COLUMN | BAND | SUMMARY)
     #: of the contents
-    max_acceleration_m_s2: Annotated[
-        ValueT | None,
-        Shown(
-            *("acceleration of the contents", units.ACCELERATION, COLUMN | BAND | READ),
-            impact=True,
-            window="acceleration_window_s",
-            cutoff="contents_filter_Hz",
-        ),
-    ] = None
+    max_acceleration_m_s2: ValueT | None = shown(
+        "acceleration of the contents",
+        units.ACCELERATION,
+        COLUMN | BAND | READ,
+        impact=True,
+        window="acceleration_window_s",
+        cutoff="contents_filter_Hz",
+    )
     #: None of a rigid container
-    max_von_mises_Pa: Annotated[
-        ValueT | None, Shown("von Mises stress", units.MEGAPASCALS, COLUMN | BAND | READ, impact=True)
-    ] = None
+    max_von_mises_Pa: ValueT | None = shown(
+        "von Mises stress", units.MEGAPASCALS, COLUMN | BAND | READ, impact=True
+    )
     #: largest of all joints and sides; of short members of a band that change one input
-    bolt_tension_N: Annotated[ValueT | None, Shown("tension of the bolts", units.KILONEWTONS, BAND)] = None
+    bolt_tension_N: ValueT | None = shown("tension of the bolts", units.KILONEWTONS, BAND)
     #: largest of all joints; likewise
-    bolt_shear_N: Annotated[ValueT | None, Shown("shear of the bolts", units.KILONEWTONS, BAND)] = None
+    bolt_shear_N: ValueT | None = shown("shear of the bolts", units.KILONEWTONS, BAND)
 
 
 OF_LINKS = COLUMN | BAND | READ
@@ -220,31 +201,21 @@ OF_LINKS = COLUMN | BAND | READ
 class LinkFigures(JsonBlock, Generic[ValueT]):
     """What stops, ties and neighbours do, all of a kind together; None of a container without them."""
 
-    stop_force_N: Annotated[
-        ValueT | None, Shown("largest force on a stop", units.KILONEWTONS, OF_LINKS, struck=True)
-    ] = None
-    tie_force_N: Annotated[ValueT | None, Shown("largest force in a tie", units.KILONEWTONS, OF_LINKS)] = None
-    neighbour_force_N: Annotated[
-        ValueT | None, Shown("largest force between containers", units.KILONEWTONS, OF_LINKS, struck=True)
-    ] = None
+    stop_force_N: ValueT | None = shown("largest force on a stop", units.KILONEWTONS, OF_LINKS, struck=True)
+    tie_force_N: ValueT | None = shown("largest force in a tie", units.KILONEWTONS, OF_LINKS)
+    neighbour_force_N: ValueT | None = shown(
+        "largest force between containers", units.KILONEWTONS, OF_LINKS, struck=True
+    )
     #: how often a gap or slack was used up
-    link_hits: Annotated[
-        ValueT | None, Shown("hits on stops, ties and neighbours", units.WHOLE, OF_LINKS)
-    ] = None
+    link_hits: ValueT | None = shown("hits on stops, ties and neighbours", units.WHOLE, OF_LINKS)
     #: with which one was used up
-    link_velocity_m_s: Annotated[
-        ValueT | None, Shown("largest closing velocity", units.VELOCITY, OF_LINKS)
-    ] = None
+    link_velocity_m_s: ValueT | None = shown("largest closing velocity", units.VELOCITY, OF_LINKS)
     #: the first that broke
-    link_broken_at_s: Annotated[
-        ValueT | None, Shown("first stop or tie broken at", units.SECONDS, OF_LINKS)
-    ] = None
+    link_broken_at_s: ValueT | None = shown("first stop or tie broken at", units.SECONDS, OF_LINKS)
     #: of those that are whole; the least
-    link_slack_m: Annotated[ValueT | None, Shown("least gap or slack left", MM, OF_LINKS)] = None
+    link_slack_m: ValueT | None = shown("least gap or slack left", MM, OF_LINKS)
     #: over its own slenderness angle
-    neighbour_rotation_ratio: Annotated[
-        ValueT | None, Shown("rotation ratio of the neighbours", units.RATIO, OF_LINKS)
-    ] = None
+    neighbour_rotation_ratio: ValueT | None = shown("rotation ratio of the neighbours", units.RATIO, OF_LINKS)
 
 
 JOINT_SLIP = Shown(
@@ -272,11 +243,11 @@ class RunFigures(
 
     boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
     #: the first box of a loose stack that fell, from 1 at the floor
-    fell_box: Annotated[int | None, Shown("first box that fell", units.COUNT, COLUMN | MAP)] = None
+    fell_box: int | None = shown("first box that fell", units.COUNT, COLUMN | MAP)
     #: the container of a row that overturned first: "container" or "neighbour 2"
-    fell_in_row: Annotated[str | None, Shown("first of the row to overturn", units.COUNT, COLUMN)] = None
+    fell_in_row: str | None = shown("first of the row to overturn", units.COUNT, COLUMN)
     #: of the containers of a row: of that of the case, then of its neighbours
-    row_outcomes: Annotated[str | None, Shown("outcomes along the row", units.COUNT, COLUMN)] = None
+    row_outcomes: str | None = shown("outcomes along the row", units.COUNT, COLUMN)
 
     @property
     def turned(self) -> float:
@@ -322,10 +293,14 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True) | of_derived
 
 
-def declared_in(kind: type) -> dict[str, Shown]:
-    """How people are shown what a class holds, by key."""
-    hints = _hints(kind).items()
-    return {key: arg for key, hint in hints for arg in get_args(hint) if isinstance(arg, Shown)}
+def declared_in(kind: Any) -> dict[str, Shown]:
+    """How people are shown what a class holds, by key: by its field, else by its type."""
+    own = {one.name: one.metadata.get("shown") for one in fields(kind)}
+    said = {
+        key: own.get(key) or next((arg for arg in get_args(hint) if isinstance(arg, Shown)), None)
+        for key, hint in _hints(kind).items()
+    }
+    return {key: how for key, how in said.items() if how is not None}
 
 
 def types_of(kind: type) -> dict[str, type]:

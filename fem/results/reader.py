@@ -4,7 +4,6 @@ Only what is asked for is read: `run.json` at once, the case and the history on 
 time. An unfinished run opens as well, with the files it has. SI units; x to the right, z up, rotation > 0 toward +x.
 """
 
-import importlib
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -15,7 +14,7 @@ import numpy as np
 
 from fem.case.case import Case, load_case
 from fem.results.errors import FolderError
-from fem.results.fields import FieldError, Fields, Frame, open_fields
+from fem.results.fields import FieldError, Fields, Frame, open_fields, pyvista_grid
 from fem.results.history import History, read_history
 from fem.results.kinds import KINDS, RUN, read_result, typed_result
 from fem.results.run_files import RunFiles
@@ -191,12 +190,6 @@ class RunData(Protocol):
     def slenderness_angle(self) -> float: ...
     @property
     def rigid_check(self) -> dict[str, FloatArray] | None: ...
-
-
-def pyvista_grid(frame: Frame) -> "UnstructuredGrid":
-    """A frame as a grid, see `fem.results.grid`; only who asks for one waits for pyvista, a second."""
-    grid: UnstructuredGrid = importlib.import_module("fem.results.grid").grid_of(frame)
-    return grid
 
 
 def _unreadable(path: Path, error: Exception) -> str:

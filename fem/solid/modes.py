@@ -14,7 +14,7 @@ from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from fem.results.vtu import FrameFormat
+from fem.results.fields import FrameFormat
 from fem.runtime.arrays import FloatArray
 from fem.runtime.own_files import make_folder, write_atomically
 from fem.solid.assembly import FiniteElements, factorised

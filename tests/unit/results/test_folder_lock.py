@@ -10,12 +10,12 @@ import sys
 import pytest
 
 from fem.results.errors import FolderLockedError
-from fem.results.lock import LOCK_NAME, OWNER_NAME, locked_folder
+from fem.results.folder import LOCK_NAME, OWNER_NAME, locked_folder
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from fem.results.lock import locked_folder
+from fem.results.folder import locked_folder
 with locked_folder(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)

@@ -17,8 +17,8 @@ import fem.run.output
 import fem.runtime.own_files
 from fem.__main__ import main
 from fem.results.archive import read_archive, write_archive
+from fem.results.folder import LOCK_NAME, OWNER_NAME, locked_folder
 from fem.results.kinds import read_result
-from fem.results.lock import LOCK_NAME, OWNER_NAME, locked_folder
 from fem.runtime.progress import ScreenReporter
 
 COMMON = ("solver.model=rigid", "solver.duration_s=3", "output.figures=false", "output.fields_s=0.25")
