@@ -37,11 +37,7 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
 
 
 def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
-    """Figures of a run by name, in the order of reading: from the cache, or else drawn.
-
-    Raises:
-        FolderError: the history is missing or damaged.
-    """
+    """Figures of a run by name, in the order of reading: from the cache, or else drawn; FolderError as `figures_of`."""
     drawings = _cached(run.place)
     if drawings is None:
         drawings = _draw(run, container)

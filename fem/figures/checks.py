@@ -75,20 +75,29 @@ def band_figure(run: RunData) -> Figure | None:
         what = f"{member.kind}s" if member.kind in ("pair", "draw") else WORDS.get(key, key) or "as given"
         groups.setdefault(what, []).append(member)
     figure, (above, below) = style.panels((2.2, 1.5), header=3, below=LABELS)
+    alike: dict[
+        tuple[bool, str], list[tuple[float, ChangedRun]]
+    ] = {}  # drawn at once: one by one takes 0.1 s
     for position, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
-            own = member is band.members[0]
-            for axes, height in ((above, _height(member)), (below, 1e3 * member.slipped_most)):
-                axes.plot(
-                    position + offset,
-                    height,
-                    marker="o" if member.outcome else "x",
-                    color=style.STATE_COLOURS.get(member.outcome or "", style.VERMILLION),
-                    markeredgecolor=style.BLACK if member.outcome else style.VERMILLION,
-                    markersize=9 if own else 5,
-                    linestyle="none",
-                )
+            look = member is band.members[0], member.outcome or ""
+            alike.setdefault(look, []).append((position + offset, member))
+    for (own, outcome), marks in alike.items():
+        places = [place for place, _ in marks]
+        for axes, heights in (
+            (above, [_height(member) for _, member in marks]),
+            (below, [1e3 * member.slipped_most for _, member in marks]),
+        ):
+            axes.plot(
+                places,
+                heights,
+                marker="o" if outcome else "x",
+                color=style.STATE_COLOURS.get(outcome, style.VERMILLION),
+                markeredgecolor=style.BLACK if outcome else style.VERMILLION,
+                markersize=9 if own else 5,
+                linestyle="none",
+            )
     for outcome in band.outcomes:
         above.plot([], [], "o", color=style.STATE_COLOURS[outcome], markersize=8, label=outcome)
     if any(member.outcome is None for member in band.members):

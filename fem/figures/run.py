@@ -49,11 +49,7 @@ LANDING_FORCE = 2.0  #: times weight: a larger force is that of a landing
 
 
 def figures_of(run: RunData) -> dict[str, Figure]:
-    """All figures of this run by name, in the order of reading.
-
-    Raises:
-        FolderError: the history is missing or damaged.
-    """
+    """All figures of this run by name, in the order of reading; FolderError without a sound history."""
     if len(run.history.modes) < 2:
         return {}
     with style.house_style():
@@ -91,11 +87,7 @@ def draw_curve(run: RunData, name: str, axes: Axes) -> Figure:
 
 
 def draw_all(run: RunData, container: Container) -> list[Drawing]:
-    """The figures of a run as SVG, with the elastic modes of its container whatever the model.
-
-    Raises:
-        FolderError: the history is missing or damaged.
-    """
+    """The figures of a run as SVG, with the elastic modes of its container whatever the model; errors likewise."""
     figures, elements = figures_of(run), container.elements
     with style.house_style():
         figures["modes"] = modes_figure(
@@ -286,12 +278,7 @@ def phase_portrait_figure(run: RunData) -> Figure | None:
 
 
 def phases(history: History, weight: float) -> IntArray:
-    """Which of `PHASES` the motion from each sample to the next belongs to, shape (n_samples - 1,).
-
-    Args:
-        history: with the force of the floor.
-        weight: [N].
-    """
+    """Which of `PHASES` the motion from each sample to the next belongs to, shape (n_samples - 1,); weight [N]."""
     force, rotation, uplift = (history[name] for name in ("normal_force_N", "rotation_rad", "uplift_m"))
     lands = np.maximum(force[:-1], force[1:]) > LANDING_FORCE * weight
     lands |= (rotation[:-1] * rotation[1:] < 0.0) & (np.maximum(uplift[:-1], uplift[1:]) > 0.0)

@@ -72,11 +72,7 @@ def write_archive(path: Path, about: Mapping[str, Any], arrays: Mapping[str, NDA
 
 
 def read_archive(path: Path) -> Archive:
-    """Read a checkpoint file, whoever wrote it.
-
-    Raises:
-        CheckpointError: missing or damaged.
-    """
+    """Read a checkpoint file, whoever wrote it; CheckpointError where it is missing or damaged."""
     try:
         about, arrays = _read(read_own(path))
     except OSError as error:

@@ -35,6 +35,7 @@ Array = Reals | NDArray[np.int32] | NDArray[np.uint8]
 
 #: VTK's numbers of cells by their nodes: corners first, then mid-sides, then the centre
 CELL_TYPES = {4: 9, 9: 28}
+SMALLEST = 9  #: level of zlib of what all frames share
 TYPES = {"float32": "Float32", "float64": "Float64", "int32": "Int32", "uint8": "UInt8"}
 HEAD = (
     '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
@@ -66,13 +67,13 @@ class FrameFormat:
         count, size = cells.shape
         self._piece = f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{count}">\n'
         ends = np.arange(size, size * count + 1, size, dtype=np.int32)
-        self._points = {"Points": _shared(points)}
+        self._points = {"Points": _coded(points, SMALLEST)}
         self._cells = {
-            "connectivity": _shared(cells.ravel()),
-            "offsets": _shared(ends),
-            "types": _shared(np.full(count, CELL_TYPES[size], dtype=np.uint8)),
+            "connectivity": _coded(cells.ravel(), SMALLEST),
+            "offsets": _coded(ends, SMALLEST),
+            "types": _coded(np.full(count, CELL_TYPES[size], dtype=np.uint8), SMALLEST),
         }
-        self._cell_data = {name: _shared(values) for name, values in cell_data.items()}
+        self._cell_data = {name: _coded(values, SMALLEST) for name, values in cell_data.items()}
 
     def frame(self, point_data: Mapping[str, Reals], time: float | None = None) -> bytes:
         """A frame with these arrays at its points, shape (n,) or (n, 3), and its time [s], where it has one."""
@@ -97,11 +98,6 @@ class FrameFormat:
         return b"".join(
             [*(part.encode() for part in parts), *blocks[::-1], b"\n</AppendedData>\n</VTKFile>\n"]
         )
-
-
-def _shared(values: Array) -> tuple[str, bytes]:
-    """As `_coded`, as small as can be."""
-    return _coded(values, level=9)
 
 
 def _coded(values: Array, level: int = 1) -> tuple[str, bytes]:
@@ -284,11 +280,7 @@ class Fields:
         return int(np.argmin(np.abs(self.times - time)))
 
     def index_at(self, time: float) -> int:
-        """Index of the frame of a time [s], within half an interval.
-
-        Raises:
-            FieldError: there is none.
-        """
+        """Index of the frame of a time [s], within half an interval; FieldError where there is none."""
         if not len(self):
             raise FieldError("there are no frames; compute the case with output.fields_s > 0")
         first, last = float(self.times[0]), float(self.times[-1])
@@ -298,11 +290,7 @@ class Fields:
         return self.nearest(time)
 
     def frame(self, index: int) -> Frame:
-        """A frame, read from its file where there is one.
-
-        Raises:
-            FieldError: its file is missing or damaged.
-        """
+        """A frame, read from its file where there is one; FieldError where that is missing or damaged."""
         if self.kept:
             return self.kept[index]
         path = self.files[index]

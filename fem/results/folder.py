@@ -77,11 +77,7 @@ class FolderLock:
         return _owner_of(self._folder).get("token") == self._token and (self._folder / LOCK_NAME).exists()
 
     def check(self) -> None:
-        """Make sure that the folder is still held.
-
-        Raises:
-            FolderLostError: it is not.
-        """
+        """Make sure that the folder is still held; FolderLostError where it is not."""
         if not self.is_held:
             lost = "emptied or taken by another process" if self._folder.is_dir() else "removed"
             raise FolderLostError(self._folder, lost)
@@ -163,15 +159,7 @@ def program_of_results() -> dict[str, Any]:
 
 
 def require_same_program(folder: Path, mark: Mapping[str, Any]) -> None:
-    """Refuse to continue with what another version of the program computed.
-
-    Args:
-        folder: of the results.
-        mark: its marking file.
-
-    Raises:
-        FolderError: names what differs.
-    """
+    """Refuse to continue with what another version of the program computed: a FolderError names what differs."""
     if mark.get("program") != program_identity()["sources"]:
         raise FolderError(f"{folder} holds results of another version of the program; {REMEDY}")
     theirs = mark.get("versions")
@@ -254,11 +242,7 @@ class ResultFolder:
         write_archive(self.path / name, {}, arrays)
 
     def read_arrays(self, name: str) -> dict[str, np.ndarray] | None:
-        """The arrays of such a file, or None if there is none.
-
-        Raises:
-            FolderError: it is damaged.
-        """
+        """The arrays of such a file, or None if there is none; FolderError where it is damaged."""
         return read_archive(self.path / name).arrays if (self.path / name).exists() else None
 
     def remove(self, *patterns: str) -> None:
@@ -266,14 +250,9 @@ class ResultFolder:
         remove_files(self.path, patterns)
 
     def require_room(self, size: float, what: str, way_out: str) -> None:
-        """Refuse a result that the disk cannot hold, counting the files that it replaces.
+        """Refuse a result of a size [bytes] that the disk cannot hold, counting the files that it replaces.
 
-        Args:
-            size: of the result [bytes].
-            what: is to be computed; way_out: other than another folder.
-
-        Raises:
-            FolderError: with the room needed and the room there is.
+        `what` is to be computed; `way_out` is another one than another folder.
         """
         free = free_disk(self.path, self.kind.own)
         if free is not None and size > free:
@@ -283,19 +262,12 @@ class ResultFolder:
             )
 
     def require_same_program(self) -> None:
-        """Refuse to continue with what another version of the program computed; raises as the function."""
+        """As the function."""
         if self.earlier is not None:
             require_same_program(self.path, self.earlier)
 
     def refuse_unfinished(self, progress: str) -> None:
-        """Refuse to overwrite an unfinished result that is worth continuing, unless it is to be.
-
-        Args:
-            progress: how far it is, such as "12 of 20 rows".
-
-        Raises:
-            FolderError: neither --resume nor --force was given.
-        """
+        """Refuse to overwrite an unfinished result of some progress ("12 of 20 rows") without --resume or --force."""
         if self.earlier is not None and not self.finished and not self.resume:
             raise FolderError(
                 f"{self.path} holds this {self.kind.name}, unfinished, with {progress}; --resume continues it, --force "

@@ -67,11 +67,7 @@ class History(dict[str, Any]):
         return {name: units.get(re.sub(r"_\d+_", "_{}_", name), "") for name in self.numbers}
 
     def to_dataframe(self) -> Any:
-        """A table of pandas, with the states of motion as its last column.
-
-        Raises:
-            ImportError: pandas is not installed.
-        """
+        """A table of pandas, with the states of motion as its last column; ImportError without pandas."""
         try:
             pandas = importlib.import_module("pandas")
         except ModuleNotFoundError:

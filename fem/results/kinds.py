@@ -130,11 +130,7 @@ KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, SIZE, HALL, PAPER, VERIFICATION)
 
 
 def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
-    """The content of a marking file, `run.json` by default.
-
-    Raises:
-        FolderError: there is none, or it is damaged.
-    """
+    """The content of a marking file, `run.json` by default; FolderError where there is none, or it is damaged."""
     try:
         result = read_json(path)
     except OSError as error:
@@ -153,11 +149,7 @@ def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
 
 
 def typed_result(result: type[BlockT], content: Mapping[str, Any], path: Path) -> BlockT:
-    """The content of a marking file as a type.
-
-    Raises:
-        FolderError: it is damaged.
-    """
+    """The content of a marking file as a type; FolderError where it is damaged."""
     try:
         return result.from_json(content)
     except ValueError as error:
