@@ -1,6 +1,7 @@
 """Figures of recorded motions: acceleration, velocity, displacement and response spectrum; the spectra of a set."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -66,9 +67,9 @@ def draw_spectra(
 def _draw_fractiles(panel: Axes, periods: FloatArray, spectra: FloatArray) -> None:
     """Bands of spectra (n, k) that hold all motions, and those from 16 to 84 %; the median."""
     low, middle, high = np.quantile(spectra, (0.16, 0.5, 0.84), axis=0)
-    all_of_them = spectra.min(axis=0), spectra.max(axis=0), 0.15, "all"
-    for lower, upper, alpha, label in (all_of_them, (low, high, 0.35, "16 to 84 %")):
-        panel.fill_between(periods, lower, upper, color=style.BLUE, linewidth=0.0, alpha=alpha, label=label)
+    look: dict[str, Any] = {"color": style.BLUE, "linewidth": 0.0}
+    panel.fill_between(periods, spectra.min(axis=0), spectra.max(axis=0), alpha=0.15, label="all", **look)
+    panel.fill_between(periods, low, high, alpha=0.35, label="16 to 84 %", **look)
     panel.plot(periods, middle, color=style.BLUE, linewidth=1.2, label="median")
 
 

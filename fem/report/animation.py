@@ -309,14 +309,8 @@ def exaggeration(animation: Animation, height: float) -> float:
 def exaggerations(animation: Animation, height: float) -> list[float]:
     """Factors to choose from; none where the container is rigid."""
     fit = exaggeration(animation, height)
-    if fit == 0.0:
-        return []
-    return sorted(
-        {
-            1.0,
-            *(one_two_five(fit * factor, up=False) for factor in (0.1, 0.3, 1.0, 3.0) if fit * factor > 1.0),
-        }
-    )
+    factors = [fit * factor for factor in (0.1, 0.3, 1.0, 3.0)]
+    return sorted({1.0, *(one_two_five(one, up=False) for one in factors if one > 1.0)} if fit else ())
 
 
 def colour_scale(name: str, count: int) -> list[str]:

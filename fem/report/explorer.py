@@ -20,7 +20,6 @@ from fem.results.outcome import ending_of
 from fem.run.card import DOES, deciding_in_words, line
 from fem.run.compute import Run
 from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
-from fem.runtime.arrays import FloatArray
 from fem.runtime.identity import command_line
 from fem.study.axes import Axis, axis_name, in_words
 from fem.study.design import Sweep
@@ -46,12 +45,7 @@ SURENESS = {
 
 
 def explorer(sweep: Sweep, folder: Path, jobs: int | None = None) -> str:
-    """The page of a finished sweep, as the text of an HTML file.
-
-    Args:
-        sweep: as it was asked.
-        folder: of its results.
-        jobs: cores to use; default: all.
+    """The page of a finished sweep, from the folder of its results, as the text of an HTML file.
 
     Raises:
         FolderError: it is not finished, its containers are several bodies, or it has more cells than a page has room
@@ -64,20 +58,19 @@ def explorer(sweep: Sweep, folder: Path, jobs: int | None = None) -> str:
     cells: list[dict[str, Any]] = []
     motion = np.zeros((len(COLUMNS), sweep.count, samples))
     for first in range(0, sweep.count, AT_A_TIME):
-        known = [
-            k for k in range(first, min(first + AT_A_TIME, sweep.count)) if table["status"][k] != "failed"
-        ]
+        chunk = range(first, min(first + AT_A_TIME, sweep.count))
+        known = [cell for cell in chunk if table["status"][cell] != "failed"]
         cases = [sweep.make.case(sweep.item(cell)) for cell in known]
         if any(case.neighbour or case.container.is_loose for case in cases):
             raise FolderError(
                 f"{folder}: the explorer draws one body; containers in a row and loose boxes are several"
             )
         runs = dict(zip(known, compute_many(cases, jobs, band=False, margin=False), strict=True))
-        for cell in range(first, min(first + AT_A_TIME, sweep.count)):
-            run = runs.get(cell)
-            cells.append(
-                {"command": _command(sweep, folder, cell)} | (_shown(run, table, cell) if run else {})
-            )
+        for cell in chunk:
+            run, values = runs.get(cell), sweep.make.values(sweep.item(cell).point)
+            changes = (word for key, value in values.items() for word in ("--set", f"{key}={value}"))
+            command = command_line("run", str(folder / "base.toml"), *changes)
+            cells.append({"command": command} | (_shown(run, table, cell) if run else {}))
             if run is None:
                 continue
             if samples < LEAST_RATE * cells[-1]["end"]:
@@ -85,7 +78,10 @@ def explorer(sweep: Sweep, folder: Path, jobs: int | None = None) -> str:
                     f"{folder}: {sweep.count} cells of {cells[-1]['end']:g} s are more than one page can show; take "
                     "fewer values or a shorter solver.duration_s"
                 )
-            motion[:, cell] = _sampled(run, samples)
+            times = np.linspace(0.0, run.history["time_s"][-1], samples)
+            motion[:, cell] = [
+                np.interp(times, run.history["time_s"], run.history[name]) for name in COLUMNS.values()
+            ]
     names = zip(COLUMNS, motion, strict=True)
     return html_of(
         Page(
@@ -122,13 +118,6 @@ def _axis(table: SweepTable, axis: Axis) -> dict[str, Any]:
     }
 
 
-def _command(sweep: Sweep, folder: Path, cell: int) -> str:
-    """What runs a cell by itself."""
-    values = sweep.make.values(sweep.item(cell).point)
-    changes = (word for key, value in values.items() for word in ("--set", f"{key}={value}"))
-    return command_line("run", str(folder / "base.toml"), *changes)
-
-
 def _shown(run: Run, table: SweepTable, cell: int) -> dict[str, Any]:
     """What the page says of a cell, and the size of its container."""
     result, box = run.typed_result, run.case.container
@@ -146,10 +135,3 @@ def _shown(run: Run, table: SweepTable, cell: int) -> dict[str, Any]:
         "size": [box.width_m, box.height_m, box.boxes],
         "centre": [float(run.history[name][0]) for name in ("centre_x_m", "centre_z_m")],
     }
-
-
-def _sampled(run: Run, samples: int) -> FloatArray:
-    """The columns at so many instants from the begin to the end of a run, (4, n)."""
-    history = run.history
-    times = np.linspace(0.0, history["time_s"][-1], samples)
-    return np.array([np.interp(times, history["time_s"], history[name]) for name in COLUMNS.values()])
