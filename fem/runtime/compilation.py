@@ -47,7 +47,7 @@ class Compilations(event.Listener):
         body = BODIES.get(getattr(kind, "__name__", ""), "this model")
         own = f"a minute or more with numba {numba.__version__}'s own passes, for the same results"
         time_left = own if PLAIN else "half a minute or more"
-        self.message(f"compiling the stepping of {body}, once after installation: {time_left}")
+        self.message(f"compiling the stepping of {body}, step 1 of 2, once after installation: {time_left}")
 
     def on_end(self, event: event.Event) -> None:
         self._depth, self._functions = self._depth - 1, self._functions + 1
@@ -55,8 +55,8 @@ class Compilations(event.Listener):
         if self._depth == 0:
             self.past += took
         elif self._depth == 1 and self.message and "advance" in event.data["dispatcher"].py_func.__name__:
-            left = OPTIMISING * took
-            self.message(f"compiling the stepping: {self._functions} functions translated, {left:.0f} s left")
+            left = f"{self._functions} functions translated, {OPTIMISING * took:.0f} s left"
+            self.message(f"compiling the stepping, step 2 of 2: {left}")
 
 
 _ALL = Compilations()
