@@ -37,9 +37,9 @@ LARGEST, LEAST = 4.0, 0.05  #: factors
 SURELY_AT_REST = 0.6
 SCANNED, STEP = 15, 1.15  #: most factors of a first scan, and their least ratio
 #: width of a located end over the end, and of the finest steps below it; of drawn inputs
-RESOLUTION, FINEST, DRAWN_RESOLUTION = 0.01, 0.01, 0.04
+RESOLUTION, FINEST, DRAWN_RESOLUTION = 0.01, 0.005, 0.04
 #: processor time of the runs of a case, and of its draws [s]; runs of a case at least and at most
-OWN_S, DRAWN_S, LEAST_RUNS, MOST_RUNS = 1.0, 1.2, 25, 120
+OWN_S, DRAWN_S, LEAST_RUNS, MOST_RUNS = 1.0, 1.2, 25, 200
 #: draws; of a model whose runs are dear; runs of one draw, and of these its first
 DRAWS, LEAST_DRAWS, RUNS_A_DRAW, RISING = 16, 6, 5, 3
 SCAN_S = 12.0  #: processor time up to which a margin is found unasked [s]
@@ -209,7 +209,8 @@ def _governing(own: Search, draws: Sequence[Search], in_band: Ending | None) -> 
         return Governing(factor=1.0, of="variations", ending=in_band.word, step=None, **counts)
     search = (own, *draws)[number]
     up_to = search.end if factor is None else factor
-    steps = [high / low - 1.0 for low, high in search.steps(up_to) if low >= min(1.0, up_to)]
+    asked = 1.0 if up_to > 1.0 else 0.0  # of one that falls under its own motion, all steps below
+    steps = [high / low - 1.0 for low, high in search.steps(up_to) if low >= asked]
     return Governing(
         factor=factor,
         of="variations" if number else "case",
