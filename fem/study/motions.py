@@ -7,7 +7,6 @@ import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -152,17 +151,7 @@ def spectra_of(
 def _each(
     runner: Runner | None, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]
 ) -> list[FoundT]:
-    """The results of some work, done by workers for many items; the ValueError of the first that raises one."""
-    if runner is None or len(items) < LARGE_SET:
-        return list(map(work, items))
-    results: list[FoundT] = []
-    for _, found in sorted(runner.each(what, enumerate(items), work), key=itemgetter(0)):
-        if isinstance(found, ValueError):
-            raise found
-        results.append(found)
-    if len(results) < len(items):
-        raise KeyboardInterrupt
-    return results
+    return runner.each(what, items, work) if runner and len(items) >= LARGE_SET else list(map(work, items))
 
 
 def _components(case: Case) -> Iterator[tuple[str, TableMotion]]:

@@ -118,7 +118,18 @@ class Runner:
             if total and done == total and time.perf_counter() - began > TOLD_S:
                 self.reporter.message(told())  # the last line does not stand at a time left
 
-    def each(
+    def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
+        """The results of some work for each item, in their order; the ValueError of the first that raises one."""
+        results: list[FoundT] = []
+        for _, found in sorted(self.found(what, enumerate(items), work), key=itemgetter(0)):
+            if isinstance(found, ValueError):
+                raise found
+            results.append(found)
+        if len(results) < len(items):
+            raise KeyboardInterrupt
+        return results
+
+    def found(
         self,
         what: str,
         items: Iterable[tuple[int, ItemT]],
@@ -369,7 +380,7 @@ def compute_many(
     reporter = ScreenReporter(quiet=not (watched() if progress is None else progress))
     with LocalWorkers(jobs, WORTH_PROCESSES if alone is None else IN_THREADS) as workers_of:
         runner = Runner(workers_of=workers_of, reporter=reporter, stop=stop_requested)
-        with closing(runner.each("runs", items, work, lambda item: item[1].solver.model)) as found:
+        with closing(runner.found("runs", items, work, lambda item: item[1].solver.model)) as found:
             for number, run in found:
                 runs[number] = noted(run, number)
     if stop_requested():
