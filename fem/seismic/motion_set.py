@@ -26,6 +26,7 @@ FIRST_PERIOD_S = 0.05
 PERIODS_SHOWN = 100
 SHORTEST_SHOWN_S = 0.02
 ROUNDING = 1e-9  #: largest shortfall that is rounding
+ENOUGH = LEAST_SHARE * (1.0 - ROUNDING)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -151,7 +152,7 @@ def check_set(
             name=f"least mean over target, {FIRST_PERIOD_S:g} to {longest:.3g} s, at {periods[index]:.3g} s",
             found=ratio,
             demanded=f"at least {LEAST_SHARE:g}",
-            fulfilled=_suffices(ratio),
+            fulfilled=ratio >= ENOUGH,
             clause=f"{CLAUSE} (4) c)",
             reason=f"the mean spectrum is {ratio:.2f} of the target at {periods[index]:.3g} s, at least "
             f"{LEAST_SHARE:g} is needed (3.2.3.1.2(4)c)",
@@ -175,7 +176,7 @@ def check_set(
             name=f"{name}: least mean over target, at {periods[least[1]]:.3g} s",
             found=least[0],
             demanded=f"at least {LEAST_SHARE:g}" if artificial else "shown only: recorded components",
-            fulfilled=_suffices(least[0]) or not artificial,
+            fulfilled=least[0] >= ENOUGH or not artificial,
             clause=clause if artificial else "",
             reason=f"the mean {spectrum} is {least[0]:.2f} of its target at {periods[least[1]]:.3g} s, at least "
             f"{LEAST_SHARE:g} is needed",
@@ -222,10 +223,6 @@ def check_set(
         requirements=tuple(requirements),
         reasons=tuple(reasons),
     )
-
-
-def _suffices(ratio: float) -> bool:
-    return ratio >= LEAST_SHARE * (1.0 - ROUNDING)
 
 
 def periods_of_check(longest: float) -> FloatArray:

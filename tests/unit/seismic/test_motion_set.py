@@ -1,13 +1,14 @@
-"""Sets of motions: their checks, sets broken on purpose, records scaled to a site or matched to its spectra."""
+"""Sets of motions: checks, sets broken on purpose, records scaled or matched; files that read back to the same bits."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from fem.records.files import read_record
 from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.artificial import artificial_motions, artificial_set
-from fem.seismic.ground_motion import sampled_at
+from fem.seismic.ground_motion import in_whole_g, sampled_at, write_at2, write_csv
 from fem.seismic.matched import matched_records, scaled_records
 from fem.seismic.motion_set import check_set, copy_correlation, largest_correlation
 
@@ -65,9 +66,10 @@ def test_a_copy_in_disguise_is_found(motions, change):
     assert any("one motion" in reason for reason in check_set([*motions, copy], ACTION).reasons)
 
 
-def test_vertical_like_horizontal_is_correlated(motions):
-    same = [replace(motion, vertical=0.5 * motion.horizontal) for motion in motions]
-    assert largest_correlation(same) == pytest.approx(1.0)
+def test_another_component_like_the_first_is_not_independent(motions):
+    for name in ("vertical", "second"):
+        same = [replace(motion, **{name: 0.5 * motion.horizontal}) for motion in motions]
+        assert largest_correlation(same) == pytest.approx(1.0)
 
 
 def test_recorded_verticals_are_shown_and_not_required(motions):
@@ -130,3 +132,35 @@ def test_matched_records_have_the_spectra_of_the_site(records):
         energy = [np.cumsum(a**2) / np.sum(a**2) for a in (record.horizontal, motion.horizontal[::2])]
         length = min(map(len, energy))
         assert np.abs(energy[0][:length] - energy[1][:length]).max() < 0.15
+
+
+GENERATOR = np.random.default_rng(7)
+VALUES = in_whole_g(
+    np.concatenate([GENERATOR.standard_normal(4000) * 10.0 ** GENERATOR.integers(-9, 2, 4000), [0.0]])
+)
+
+
+@pytest.mark.parametrize("step", [0.005, 0.01, 1.0 / 3.0])
+def test_csv_and_at2_read_back_to_the_same_bits(tmp_path, step):
+    write_csv(tmp_path / "a.csv", step, VALUES)
+    write_at2(tmp_path / "a.at2", step, VALUES, "ARTIFICIAL, , MOTION 1, H")
+    for name in ("a.csv", "a.at2"):
+        (component,) = read_record(tmp_path / name).components
+        assert component.times.tobytes() == (np.arange(VALUES.size) * step).tobytes()
+        assert component.values.tobytes() == VALUES.tobytes()
+    heading = (tmp_path / "a.at2").read_text().splitlines()[2:4]
+    assert heading == ["ACCELERATION TIME SERIES IN UNITS OF G", f"NPTS= 4001, DT= {step!r} SEC"]
+
+
+def test_rounding_to_a_number_in_g_is_no_more_than_that():
+    values = GENERATOR.standard_normal(100_000)
+    rounded = in_whole_g(values)
+    np.testing.assert_allclose(rounded, values, rtol=4e-16)
+    assert in_whole_g(rounded).tobytes() == rounded.tobytes()
+
+
+def test_what_has_no_number_in_g_is_refused(tmp_path):
+    values = GENERATOR.standard_normal(1000)
+    assert (in_whole_g(values) != values).any()
+    with pytest.raises(ValueError, match=r"9\.80665"):
+        write_at2(tmp_path / "a.at2", 0.01, values, "A, B, C, H")

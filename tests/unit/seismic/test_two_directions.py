@@ -50,13 +50,6 @@ def test_a_second_component_leaves_the_others_as_they_are_and_is_independent_of_
         assert abs(np.corrcoef(motion.horizontal, motion.second)[0, 1]) < 0.3
 
 
-def test_a_copy_of_the_first_component_is_not_independent(motions):
-    copied = GroundMotion(
-        name="copied", step=0.005, horizontal=motions[0].horizontal, second=motions[0].horizontal
-    )
-    assert largest_correlation([copied]) == pytest.approx(1.0)
-
-
 @pytest.mark.parametrize(
     ("mu", "plane", "factor"), [(0.15, 102.0, 1.7), (0.20, 45.0, 2.1), (0.25, 16.0, 2.9)]
 )
