@@ -15,12 +15,12 @@ from fem.case.case import Case
 from fem.html.page import text_of
 from fem.response.orbit import (
     EXTREME_COLUMNS,
+    GROWTH,
     SECTION_COLUMNS,
     Decay,
     LongTime,
     Orbit,
     amplitude_growth,
-    amplitudes_diverge,
 )
 from fem.response.request import ASKED, SAMPLES_PER_PERIOD, ResponseRequest
 from fem.results.figures import TURNED
@@ -131,9 +131,7 @@ def record_of(
     """What is kept of a point.
 
     Args:
-        case: with the drive, and the start of its own if it has one.
         orbit: of the window observed; where it overturned or failed, what there is of it.
-        control: of its model.
         judged: None where it overturned, failed or destroyed a corner.
         decay: with the drive stopped.
         known: further columns.
@@ -159,7 +157,7 @@ def record_of(
         known["start_rotation_rad"] = case.initial.rotation_rad
         known["start_angular_velocity_rad_s"] = case.initial.angular_velocity_rad_s
     if orbit.status != "failed" and known["motion"] != Outcome.INVALID:
-        bounded = judged is not None and not amplitudes_diverge(ratios)
+        bounded = judged is not None and amplitude_growth(ratios) <= GROWTH
         known["bounded"] = bounded
         if not bounded or (decay is not None and decay[0] != "failed"):
             known["stable"] = bounded and decay is not None and decay[0] == "dies out"

@@ -4,7 +4,7 @@ The stepping ends a step at each section, the floor's turning point at +A.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -35,17 +35,7 @@ from fem.runtime.arrays import FloatArray
 CARRIED = ("allowance_used", "recent_dissipation", "growth_hold", "lag_step")
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DrivenModel:
-    """A model on a driven floor, at t = 0."""
-
-    model: Model  #: its `run` is the one below
-    body: ModalBody
-    run: RunState
-    period: float  #: of the drive [s]
-
-
-def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
+def begin_drive(case: Case, container: Container) -> tuple[Model, float]:
     """The container as the case begins, and the time until the section [s].
 
     The case's own start: phase, ramp at the beginning, floor at rest or moving, initial state. It lasts to the first
@@ -58,18 +48,16 @@ def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
     until = turn + math.ceil(case.motion.ramp_cycles) * period
     ramp = case.motion.ramp_cycles * period
     floor = as_floor_motion(HARMONIC, (case.motion.amplitude, omega, phase, ramp, math.inf))
-    return _on_floor(model, floor, np.array([ramp, until]), period), until
+    return _on_floor(model, floor, (ramp, until)), until
 
 
-def driven_model(case: Case, container: Container) -> DrivenModel:
+def driven_model(case: Case, container: Container) -> Model:
     """The container on x = A cos(Omega t), without the motion that it has."""
-    model = build_model(case, container)
-    omega = case.motion.angular_frequency
-    floor = as_floor_motion(HARMONIC, (case.motion.amplitude, omega, 0.5 * math.pi, 0.0, math.inf))
-    return _on_floor(model, floor, np.empty(0), 2.0 * math.pi / omega)
+    drive = case.motion.amplitude, case.motion.angular_frequency, 0.5 * math.pi, 0.0, math.inf
+    return _on_floor(build_model(case, container), as_floor_motion(HARMONIC, drive))
 
 
-def carry_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
+def carry_drive(case: Case, container: Container, before: Model) -> Model:
     """The container, moving as `before` left it at a turning point of its floor, on x = A cos(Omega t).
 
     The motion is carried, the damage is not: the floor is whole again.
@@ -91,10 +79,10 @@ def carry_drive(case: Case, container: Container, before: DrivenModel) -> Driven
     return driven
 
 
-def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
+def stop_drive(case: Case, container: Container, before: Model) -> Model:
     """The container, moving as `before` left it at a turning point of its floor; the floor stays there."""
     floor = as_floor_motion(UNIFORM, (0.0, case.motion.amplitude, 0.0))
-    driven = _on_floor(build_model(case, container), floor, np.empty(0), before.period)
+    driven = _on_floor(build_model(case, container), floor)
     _carry_state(before.run, driven.run)
     return driven
 
@@ -117,17 +105,20 @@ def _carry_state(before: RunState, after: RunState) -> None:
     after.joints[:] = before.joints
 
 
-def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: float) -> DrivenModel:
-    body, run = model.body, model.run
-    if not isinstance(body, ModalBody):
-        raise TypeError("a response curve is followed with the compiled models")  # the request excludes it
-    points = run.old.point.shape[0]
-    motion = floor_motion(floor, 0.0)
-    run.floor[:] = motion
-    run = run.with_problem(motion=floor, breaks=np.append(breaks[breaks > 0.0], np.inf))
-    history = make_samples(period / SAMPLES_PER_PERIOD, 4 * SAMPLES_PER_PERIOD, points, columns=True)
+def _on_floor(model: Model, floor: FloorMotion, breaks: Sequence[float] = ()) -> Model:
+    """The model on another floor, at t = 0."""
+    run, points = model.run, model.run.old.point.shape[0]
+    run.floor[:] = floor_motion(floor, 0.0)
+    run = run.with_problem(motion=floor, breaks=np.array([*(at for at in breaks if at > 0.0), np.inf]))
+    step = period_of(model) / SAMPLES_PER_PERIOD
+    history = make_samples(step, 4 * SAMPLES_PER_PERIOD, points, columns=True)
     run = run._replace(buffers=Buffers(history=history, frames=make_samples(math.inf, 4, points)))
-    return DrivenModel(model=replace(model, run=run), body=body, run=run, period=period)
+    return replace(model, run=run)
+
+
+def period_of(model: Model) -> float:
+    """Of the drive [s]."""
+    return 2.0 * math.pi / model.case.motion.angular_frequency
 
 
 Progress = Callable[[float, float, int], None]  #: called with the time [s], the rotation [rad] and the mode
@@ -164,8 +155,8 @@ def no_progress(time: float, rotation: float, mode: int) -> None:
 
 
 def follow_periods(
-    driven: DrivenModel, count: int, *, portrayed: int = 0, progress: Progress = no_progress
-) -> tuple[DrivenModel, Orbit]:
+    driven: Model, count: int, *, portrayed: int = 0, progress: Progress = no_progress
+) -> tuple[Model, Orbit]:
     """Step through `count` periods from a section.
 
     Args:
@@ -181,7 +172,8 @@ def follow_periods(
     # drive is as exact in the last period as in the first. Steps end on each of the sections.
     times = driven.run.clock
     times.time, times.samples, times.samples_drained, times.next_break = 0.0, 0, 0, 0
-    breaks = np.append(driven.period * np.arange(1, count + 1), np.inf)
+    period = period_of(driven)
+    breaks = np.append(period * np.arange(1, count + 1), np.inf)
     driven = replace(driven, run=driven.run.with_problem(breaks=breaks))
     run, track, clock = driven.run, driven.run.track[0], driven.run.clock[0]
     sections, extremes, portraits = [], [], []
@@ -191,7 +183,7 @@ def follow_periods(
     for k, end in enumerate(breaks[:-1]):
         impacts = int(track.impacts)
         track.max_rotation, track.max_rocking = 0.0, 0.0
-        code, samples = _step_to(driven, end)
+        code, samples = step_to(driven, end)
         if code != REACHED:
             break
         _, floor_velocity, _ = floor_motion(run.problem.motion, end)
@@ -208,19 +200,19 @@ def follow_periods(
             portraits.append(samples[:, [ROW_ROTATION, ROW_ANGULAR_VELOCITY]])
         progress(float(clock.time), float(pose[ROTATION]), int(track.mode))
         if k % AUDITED == AUDITED - 1:
-            reason = audit(driven.model)
+            reason = audit(driven)
             if reason is not None:
                 break
             _open_ledger(driven)
     status = STATUSES[code]
     if code == FAILED:
         reason = (
-            f"after {clock.time / driven.period:.6g} periods: the contact forces do not converge at the smallest "
-            f"step ({run.problem.control.smallest_step:.1g} s); try {softer_contact(driven.model.case)}, "
+            f"after {clock.time / period:.6g} periods: the contact forces do not converge at the smallest "
+            f"step ({run.problem.control.smallest_step:.1g} s); try {softer_contact(driven.case)}, "
             "contact.weakening_m > 0, or a smaller solver.step_s"
         )
     else:
-        reason = reason or audit(driven.model)
+        reason = reason or audit(driven)
         status = "failed" if reason else status
     return driven, orbit_of(status, reason, sections, extremes, portraits)
 
@@ -237,25 +229,27 @@ def orbit_of(status: str, reason: str | None, *periods: list[Any]) -> Orbit:
     )
 
 
-def step_until(driven: DrivenModel, end: float) -> str:
+def step_until(driven: Model, end: float) -> str:
     """Step to an instant [s] that is a break of the run, or to the fall; returns the status."""
-    code, _ = _step_to(driven, end)
+    code, _ = step_to(driven, end)
     return STATUSES[code]
 
 
-def _open_ledger(driven: DrivenModel) -> None:
+def _open_ledger(driven: Model) -> None:
     """Reset the energy balance."""
     driven.run.ledger[:] = 0.0
     for name in ("least_imbalance", "most_imbalance", "dissipated"):
         driven.run.clock[name] = 0.0
 
 
-def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
+def step_to(driven: Model, end: float) -> tuple[int, FloatArray]:
     """Step to an instant; returns the code of the stepping and the samples on the way."""
-    run, clock = driven.run, driven.run.clock[0]
+    body, run, clock = driven.body, driven.run, driven.run.clock[0]
+    if not isinstance(body, ModalBody):
+        raise TypeError("a response curve is followed with the compiled models")  # the request excludes it
     drained = []
     while True:
-        code = advance_compiled(driven.body, run, end)
+        code = advance_compiled(body, run, end)
         count = int(clock.samples - clock.samples_drained)
         drained.append(run.buffers.history.columns[:count].copy())
         clock.samples_drained = clock.samples
@@ -295,9 +289,20 @@ def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANC
         resting: nothing moved beyond the limits of a verdict.
         tolerance: of the largest coordinate.
     """
+
+    def distances(n: int) -> FloatArray:
+        """Largest coordinate of the difference of each section to the one n before, shape (count - n,)."""
+        return np.asarray(np.abs(sections[n:] - sections[:-n]).max(axis=1))
+
+    def approach(n: int) -> float:
+        """Mean distance of sections n apart in the second half of the window over that in the first."""
+        apart = distances(n)
+        half = apart.size // 2
+        return float(apart[-half:].mean() / max(apart[:half].mean(), 1e-300))
+
     count = len(sections)
     looked_for = min(LARGEST_PERIOD, count // REPEATS)
-    scatters = np.array([distances(sections, n).max() for n in range(1, looked_for + 1)])
+    scatters = np.array([distances(n).max() for n in range(1, looked_for + 1)])
     repeating = np.flatnonzero(scatters <= tolerance)
     n = int(repeating[0]) + 1 if repeating.size else int(np.argmin(scatters)) + 1
     period = ratio = None
@@ -306,7 +311,7 @@ def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANC
     else:
         # a spiral toward a motion of period m comes back to itself first after a multiple of m
         tried = [m for m in range(1, n) if n % m == 0] if repeating.size else range(1, looked_for + 1)
-        ratio = min((approach(sections, m) for m in tried), default=None)
+        ratio = min((approach(m) for m in tried), default=None)
         if ratio is not None and ratio < SETTLING:
             kind = "not settled"
         elif repeating.size:
@@ -317,20 +322,8 @@ def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANC
     return LongTime(long_time=kind, period_n=period, scatter=scatter, pairs_compared=compared, settling=ratio)
 
 
-def distances(sections: FloatArray, n: int) -> FloatArray:
-    """Largest coordinate of the difference of each section to the one n before, shape (count - n,)."""
-    return np.asarray(np.abs(sections[n:] - sections[:-n]).max(axis=1))
-
-
-def approach(sections: FloatArray, n: int) -> float:
-    """Mean distance of sections n apart in the second half of the window over that in the first."""
-    apart = distances(sections, n)
-    half = apart.size // 2
-    return float(apart[-half:].mean() / max(apart[:half].mean(), 1e-300))
-
-
 def amplitude_growth(amplitudes: FloatArray) -> float:
-    """Largest amplitude in the second half of the window over that in the first, less one [-].
+    """Largest amplitude in the second half of the window over that in the first, less one [-]; `GROWTH`: diverging.
 
     Args:
         amplitudes: (n,) largest |rotation| of each period, over the slenderness angle.
@@ -338,8 +331,3 @@ def amplitude_growth(amplitudes: FloatArray) -> float:
     half = amplitudes.size // 2
     first, second = float(amplitudes[:half].max()), float(amplitudes[-half:].max())
     return (second - first) / max(first, NEGLIGIBLE)
-
-
-def amplitudes_diverge(amplitudes: FloatArray) -> bool:
-    """Whether the amplitudes grow by more than those of a bounded motion."""
-    return amplitude_growth(amplitudes) > GROWTH

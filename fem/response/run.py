@@ -13,11 +13,10 @@ import numpy as np
 
 from contact.stepping.integrator import OVERTURNED, REACHED
 from contact.stepping.modes import ROCKING
-from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import Control
 from fem.case.case import Case, to_toml
 from fem.model.container import Container, discretise
-from fem.model.model import build_model
+from fem.model.model import Model, build_model
 from fem.response.figures import response_figures
 from fem.response.lasting import (
     PORTRAYED,
@@ -34,7 +33,6 @@ from fem.response.lasting import (
 )
 from fem.response.orbit import (
     Decay,
-    DrivenModel,
     Orbit,
     Progress,
     begin_drive,
@@ -44,6 +42,7 @@ from fem.response.orbit import (
     follow_periods,
     no_progress,
     orbit_of,
+    step_to,
     step_until,
     stop_drive,
 )
@@ -98,19 +97,15 @@ def computed(
     container: Container,
     task: Task,
     records: Sequence[PointRecord],
-    before: DrivenModel | None,
+    before: Model | None,
     control: Control,
     progress: Progress = no_progress,
-) -> tuple[list[PointRecord], DrivenModel | None]:
+) -> tuple[list[PointRecord], Model | None]:
     """The points of a task, and the motion to carry on; None where there is none.
 
     Args:
-        request: frequencies and drive.
-        container: of its case.
-        task: what to compute.
         records: what was computed before.
         before: the motion to carry on; None: begin as the case does.
-        control: of its model.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
     """
     case = request.case_at(task.number, task.model)
@@ -153,9 +148,9 @@ def follow_point(
     case: Case,
     container: Container,
     task: Task,
-    before: DrivenModel | None = None,
+    before: Model | None = None,
     progress: Progress = no_progress,
-) -> tuple[PointRecord, DrivenModel | None]:
+) -> tuple[PointRecord, Model | None]:
     """One frequency, from the motion before or as its case begins; returns the point and the motion to carry on."""
     at_section, status = before, "completed"
     if at_section is None:
@@ -169,7 +164,7 @@ def follow_point(
         driven, orbit = at_section, orbit_of(status, reason)
     judged, periods = None, len(orbit.sections)
     for _ in range(WINDOWS):
-        if orbit.status != "completed" or destroyed_corner(driven.model):
+        if orbit.status != "completed" or destroyed_corner(driven):
             break
         driven, orbit = follow_periods(driven, request.observe, portrayed=PORTRAYED, progress=progress)
         periods += len(orbit.sections)
@@ -181,7 +176,7 @@ def follow_point(
             judged = classify(scaled, resting=_motion_of(driven, orbit) == Outcome.REST)
             if judged.long_time != "not settled":
                 break
-    crushed = destroyed_corner(driven.model)
+    crushed = destroyed_corner(driven)
     stands = orbit.status == "completed" and not crushed
     fall = f"it overturned in period {periods + 1} of the drive" if orbit.status == "overturned" else None
     record = record_of(
@@ -200,9 +195,9 @@ def follow_point(
     return record, driven if stands else None
 
 
-def _motion_of(driven: DrivenModel, orbit: Orbit) -> str:
+def _motion_of(driven: Model, orbit: Orbit) -> str:
     """One word for a window of periods, with the limits of a verdict."""
-    if destroyed_corner(driven.model):
+    if destroyed_corner(driven):
         return Outcome.INVALID
     if orbit.status == "overturned":
         return Outcome.OVERTURNED
@@ -211,7 +206,7 @@ def _motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     return Outcome.of(slides=orbit.extremes[:, 4].max(initial=0.0) > least_slide(control.width), rocks=rocks)
 
 
-def _follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
+def _follow_decay(case: Case, container: Container, driven: Model) -> Decay:
     """What becomes of it with the floor stopped at a turning point, which is no impulse, and the time until then [s].
 
     dies out | overturns | goes on | failed. Whether a motion dies out is condition (b) of stability in Knoedel and
@@ -224,8 +219,7 @@ def _follow_decay(case: Case, container: Container, driven: DrivenModel) -> Deca
     moved_at, limit = 0.0, ROCKING * control.slenderness_angle
     while clock.time < PATIENCE / control.frequency_parameter:
         track.max_rotation, travelled = 0.0, float(joint.slip_travel)
-        code = advance_compiled(stopped.body, run, float(clock.time) + look)
-        clock.samples_drained = clock.samples
+        code, _ = step_to(stopped, float(clock.time) + look)
         if code == OVERTURNED:
             return "overturns", float(track.overturned_at)
         if code != REACHED:
@@ -233,7 +227,7 @@ def _follow_decay(case: Case, container: Container, driven: DrivenModel) -> Deca
         if track.max_rotation > limit or joint.slip_travel - travelled > STILL_SLIP * control.width:
             moved_at = float(clock.time)
         if clock.time - moved_at > STILL / control.frequency_parameter:
-            return "failed" if audit(stopped.model) else "dies out", moved_at
+            return "failed" if audit(stopped) else "dies out", moved_at
     return "goes on", None
 
 
@@ -305,7 +299,7 @@ def _follow(
         last = plan[done - 1]
         if last.carries and records[-1].stands:
             before = driven_model(request.case_at(last.number, last.model), containers[last.model])
-            parts = changing(before.model)
+            parts = changing(before)
             require_same(results.path / STATE, saved, parts)
             for name, part in parts.items():
                 part[...] = saved[name]
@@ -329,7 +323,7 @@ def _follow(
 
         found, before = computed(request, containers[task.model], task, records, before, control, progress)
         records, done = records + found, done + 1
-        carried = {} if before is None else changing(before.model)
+        carried = {} if before is None else changing(before)
         results.write_arrays(STATE, packed(records) | {"done": np.array(done)} | carried)
     reporter.finish()
     return done, records
