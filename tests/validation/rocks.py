@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from itertools import product
-from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -65,12 +64,7 @@ def compute(folder: Path | None) -> Experiment:
         runner = Runner(workers_of=workers_of)
         count = len(series.tests)
         pairs = [(block, number) for block in tried for number in range(count)]
-        found = runner.each("runs of blocks on the table", enumerate(pairs), partial(falls, series))
-        outcomes: list[bool | None] = []
-        for _, fell in sorted(found, key=itemgetter(0)):
-            if isinstance(fell, ValueError):
-                raise fell
-            outcomes.append(fell)
+        outcomes = runner.each("runs of blocks on the table", pairs, partial(falls, series))
     rows = [outcomes[first : first + count] for first in range(0, len(outcomes), count)]
     possible = [block for block, row in zip(tried, rows, strict=True) if None not in row]
     shares = with_neighbours(possible, np.array([row for row in rows if None not in row], dtype=bool))
