@@ -70,12 +70,13 @@ class Runner:
         make: Callable[[ItemT], Any],
         model_of: Callable[[ItemT], str],
         work: ChunkWork | None = None,
+        *,
+        takes_long: bool = False,
     ) -> Generator[tuple[list[ItemT], list[Row]], None, None]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
         Items stand in an order in which those of one container are neighbours; `make` gives the case of one, and is
-        picklable. Other `work` than runs may take long: it is handed out one by one, and gives no row where it was
-        stopped.
+        picklable. Other `work` than runs that takes long is handed out one by one, and gives no row where it was stopped.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
@@ -97,7 +98,7 @@ class Runner:
         try:
             for model, group in sorted(by_model.items(), key=lambda pair: [*CASES_AT_A_TIME].index(pair[0])):
                 pools, size, finish = self.workers_of(model, len(group)), 1, False
-                if model != "full" and work is None:  # one of these may take an hour
+                if model != "full" and not takes_long:  # one of these may take an hour
                     usual, workers, finish = CASES_AT_A_TIME[model], sum(pool.count for pool in pools), True
                     size = min(usual * workers // MANY_WORKERS, len(group) // (LEAST_CHUNKS * workers))
                     size = max(usual, size)
@@ -121,7 +122,7 @@ class Runner:
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
         """The results of some work for each item, in their order; the ValueError of the first that raises one."""
         results: list[FoundT] = []
-        for _, found in sorted(self.found(what, enumerate(items), work), key=itemgetter(0)):
+        for _, found in sorted(self.found(what, enumerate(items), work, takes_long=False), key=itemgetter(0)):
             if isinstance(found, ValueError):
                 raise found
             results.append(found)
@@ -135,12 +136,15 @@ class Runner:
         items: Iterable[tuple[int, ItemT]],
         work: Callable[[ItemT], FoundT],
         model_of: Callable[[tuple[int, ItemT]], str] = lambda item: "rigid",
+        *,
+        takes_long: bool = True,
     ) -> Generator[tuple[int, FoundT | ValueError], None, None]:
         """Let the workers do some work, which must be picklable, for each numbered item.
 
         Yields numbers and results, or the ValueError that the work raised, as they are ready.
         """
-        with closing(self.rows(what, items, itemgetter(1), model_of, partial(_work_on, work))) as found:
+        tried, make = partial(_work_on, work), itemgetter(1)
+        with closing(self.rows(what, items, make, model_of, tried, takes_long=takes_long)) as found:
             for chunk, rows in found:
                 for (number, _), row in zip(chunk, rows, strict=True):
                     yield number, row["found"]
