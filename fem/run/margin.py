@@ -127,13 +127,8 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     verdict, cost = result.verdict or Verdict(), max(cost_of(result.numerics or Numerics()), 1e-9)
     itself = Tried(ending_of(result.status, verdict.outcome), verdict.turned)
     own, least = Search(_trial(model, {}, stop), {1.0: itself}), _least(model)
-    most, draws, in_band = _largest(model.case), [], None
-    members = verdict.band.members if verdict.band else ()
-    if (
-        itself.ending != Ending.OVERTURNED
-    ):  # how a member ends that does not stand under the motion of the run
-        ends = {ending(run) for run in members[1:] if run.outcome is not None and not numerical(run)}
-        in_band = next((end for end in NOT_STANDING if end in ends), None)
+    most, draws = _largest(model.case), []
+    in_band = None if itself.ending == Ending.OVERTURNED else _in_band(verdict)
     try:
         with worker_threads(workers := workers_for(model, SCANNED)) as pool:
             _scan(own, least, most, pool, workers)
@@ -143,17 +138,11 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
             begin = min(own.known) if in_band or itself.ending == Ending.OVERTURNED else 1.0
             if drawn:
                 drawn_runs = int(DRAWN_S / cost)
-                count = min(DRAWS, max(LEAST_DRAWS, drawn_runs // RUNS_A_DRAW))
-                # those that turn most under the motion of the run, by its band
-                turned = {key_of(member.values): member.turned for member in members}
-                values = [change.values for change in all_changes(model.case, model.penalty)[2]]
-                worst = sorted(
-                    ((turned.get(key_of(one), 0.0), -k) for k, one in enumerate(values)), reverse=True
-                )
+                worst = _worst_draws(model, verdict, min(DRAWS, max(LEAST_DRAWS, drawn_runs // RUNS_A_DRAW)))
                 # what is not known to stand at `begin` falls just above it, too
                 draws = [
-                    Search(_trial(model, values[-k], stop), {begin: Tried(Ending.STANDING, most_turned)})
-                    for most_turned, k in worst[:count]
+                    Search(_trial(model, values, stop), {begin: Tried(Ending.STANDING, turned)})
+                    for values, turned in worst
                 ]
                 ratio = (own.end / begin) ** (1.0 / RISING)
                 rising = (  # staggered, the last of each where the case itself ends
@@ -167,8 +156,10 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     said = own.of(Ending.STANDING, Ending.OVERTURNED)
     factor, destroyed = own.first(Ending.OVERTURNED), own.first(Ending.INVALID)
     falls = [draw.first(Ending.OVERTURNED) for draw in draws if not draw.of(Ending.INVALID, Ending.FAILED)]
-    ends_of_all = (factor, *(draw.first(Ending.OVERTURNED) for draw in draws))
-    reached = [fall for fall in ends_of_all if fall is not None] + [1.0] * (in_band == Ending.OVERTURNED)
+    first_falls = (factor, *(draw.first(Ending.OVERTURNED) for draw in draws))
+    reached = [fall for fall in first_falls if fall is not None]
+    if in_band == Ending.OVERTURNED:
+        reached.append(1.0)
     beyond = [other for other in said if factor is not None and other > factor]
     by_ending = groupby(beyond, key=lambda factor: own.known[factor].ending)
     islands = [list(group) for end, group in by_ending if end == Ending.STANDING]
@@ -218,6 +209,22 @@ def _governing(own: Search, draws: Sequence[Search], in_band: Ending | None) -> 
         step=max(steps, default=None),
         **counts,
     )
+
+
+def _worst_draws(model: Model, verdict: Verdict, count: int) -> list[tuple[Mapping[str, Value], float]]:
+    """The draws of all unknown inputs that turn most under the motion of the run, and how far, by its band."""
+    members = verdict.band.members if verdict.band else ()
+    turned = {key_of(member.values): member.turned for member in members}
+    draws = [change.values for change in all_changes(model.case, model.penalty)[2]]
+    known = sorted(((turned.get(key_of(values), 0.0), -k) for k, values in enumerate(draws)), reverse=True)
+    return [(draws[-k], ratio) for ratio, k in known[:count]]
+
+
+def _in_band(verdict: Verdict) -> Ending | None:
+    """How a member of the band ends that does not stand under the motion of the run, by another input."""
+    members = verdict.band.members[1:] if verdict.band else ()
+    ends = {ending(member) for member in members if member.outcome is not None and not numerical(member)}
+    return next((end for end in NOT_STANDING if end in ends), None)
 
 
 def _bare(
