@@ -166,8 +166,8 @@ def test_the_margin_is_written_and_read():
 
 
 def test_a_corner_that_a_stronger_motion_destroys_governs():
-    # On the end of its wall the plateau stack crushes 7 mm of the floor; under twice its motion it is more than 10.
-    changes = ("solver.model=rigid", "solver.duration_s=10", "floor.corner_patch_m=[0.008, 1.1]")
+    # On the end of its wall the plateau stack crushes 7 mm of the floor; under 1.6 times its motion it is more than 10.
+    changes = ("solver.model=rigid", "solver.duration_s=14", "floor.corner_patch_m=[0.0075, 1.1]")
     margin = fem.compute(fem.load_case("stack_on_concrete", changes), band=False, margin=True).verdict.margin
     assert 1.0 < margin.destroyed_from < 2.0
     assert (margin.governing.factor, margin.governing.ending) == (margin.destroyed_from, "invalid")
