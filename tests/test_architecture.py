@@ -129,16 +129,16 @@ BUDGET = {
     "records": ("fem/records", 2_393, 47),
     "case": ("fem/case", 5_130, 123),
     "results": ("fem/results", 2_830, 96),
-    "seismic": ("fem/seismic", 2_152, 60),
+    "seismic": ("fem/seismic", 2_149, 60),
     "solid": ("fem/solid", 1_652, 60),
     "model": ("fem/model", 3_751, 115),
-    "run": ("fem/run", 4_399, 142),
+    "run": ("fem/run", 4_407, 142),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_879, 127),
-    "study": ("fem/study fem/response", 6_957, 200),
+    "study": ("fem/study fem/response", 6_941, 198),
     "site": ("fem/site", 4_365, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_854, 42),
-    "product": ("mesh contact fem", 51_635, 1_521),
-    "tests": ("tests", 36_610, 2_144),
+    "product": ("mesh contact fem", 51_624, 1_519),
+    "tests": ("tests", 36_581, 2_143),
 }
 
 
