@@ -76,7 +76,7 @@ class Runner:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
         Items stand in an order in which those of one container are neighbours; `make` gives the case of one, and is
-        picklable. Other `work` than runs that takes long is handed out one by one, and gives no row where it was stopped.
+        picklable. Other `work` that takes long is handed out one by one, and gives no row where it was stopped.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
