@@ -33,7 +33,7 @@ from fem.results.kinds import RUN
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict, to_overturn
-from fem.run import described, summary, words
+from fem.run import card, described, summary, words
 from fem.run.card import card_of
 from fem.run.drawn_links import drawn_links
 from fem.run.rigid_check import check_against_rigid_block
@@ -45,7 +45,9 @@ from fem.solid.modes import FEW, elastic_mode_table
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
 SHORT_MOTION = ("rotation", "slip")
 #: modules whose words the template takes
-SAID: dict[str, Any] = {module.__name__.rpartition(".")[2]: module for module in (described, summary, words)}
+SAID: dict[str, Any] = {
+    module.__name__.rpartition(".")[2]: module for module in (card, described, summary, words)
+}
 
 
 def run_report(

@@ -68,10 +68,15 @@ SLIPS, SCATTER = 1e-3, 0.2
 #: the lines of a card: what it does, the margin that governs, how far it moves, how sure that is, the static rule
 LINES = ("does", "margin_line", "how_far", "sureness", "static_line")
 
+FINEST_FIGURES = 6  #: of a factor next to 1
+
 
 def times(factor: float) -> str:
-    """A factor on a motion, with two decimals at most."""
-    return in_figures(factor, 3 if factor >= 1.0 else 2)
+    """A factor on a motion, with two decimals at most, and more where these would make it 1, which it is not."""
+    figures = 3 if factor >= 1.0 else 2
+    while factor != 1.0 and float(in_figures(factor, figures)) == 1.0 and figures < FINEST_FIGURES:
+        figures += 1
+    return in_figures(factor, figures)
 
 
 def with_words(result: RunResult, case: Case) -> RunResult:

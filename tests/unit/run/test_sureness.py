@@ -6,7 +6,7 @@ from cases import named_case
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
 from fem.results.run_result import ChangedRun, RunResult, Verdict
-from fem.run.card import line, warnings_for
+from fem.run.card import line, times, warnings_for
 from fem.run.sureness import judged
 
 MU, SLIP, PENALTY = "contact.mu_kinetic", "contact.weakening_m", "contact.normal_penalty_Pa_m"
@@ -171,3 +171,18 @@ def test_a_step_that_decides_is_no_input():
     found = verdict((FINE, FELL), (HALF, {}))
     assert (found.sure, found.numerically_unsure, found.decided_by) == ("unsure", True, ())
     assert not verdict((FINE, {}), (HALF, FELL)).numerically_unsure
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [
+        (1.0, "1.00"),
+        (1.0041, "1.004"),
+        (1.00004, "1.00004"),
+        (1.134, "1.13"),
+        (0.7512, "0.75"),
+        (0.9961, "0.996"),
+    ],
+)
+def test_a_factor_next_to_one_is_not_said_to_be_one(factor, said):
+    assert times(factor) == said
