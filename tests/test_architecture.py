@@ -132,13 +132,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_149, 60),
     "solid": ("fem/solid", 1_652, 60),
     "model": ("fem/model", 3_751, 115),
-    "run": ("fem/run", 4_407, 142),
-    "pages": ("fem/html fem/figures fem/render fem/report", 4_879, 127),
+    "run": ("fem/run", 4_412, 142),
+    "pages": ("fem/html fem/figures fem/render fem/report", 4_881, 127),
     "study": ("fem/study fem/response", 6_941, 198),
     "site": ("fem/site", 4_365, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_854, 42),
-    "product": ("mesh contact fem", 51_624, 1_519),
-    "tests": ("tests", 36_583, 2_143),
+    "product": ("mesh contact fem", 51_631, 1_519),
+    "tests": ("tests", 36_598, 2_144),
 }
 
 
