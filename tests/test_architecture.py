@@ -138,7 +138,7 @@ BUDGET = {
     "site": ("fem/site", 4_365, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_854, 42),
     "product": ("mesh contact fem", 51_631, 1_519),
-    "tests": ("tests", 36_598, 2_144),
+    "tests": ("tests", 36_605, 2_145),
 }
 
 

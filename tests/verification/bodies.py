@@ -5,7 +5,9 @@ ledger are those of every run.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from contacts import contact_of
@@ -38,6 +40,7 @@ class Flight:
     run: RunState
     step: float  #: [s]
     first_energy: float  #: kinetic and strain at t = 0 [J]
+    advance_by: Callable[[Any, RunState, float], int] = advance_body
     times: list[float] = field(default_factory=list)  #: of `normal_force` [s]
     normal_force: list[float] = field(default_factory=list)  #: of the floor, after every step [N]
 
@@ -55,7 +58,7 @@ class Flight:
         """Step to `until` [s]; with `trace`, record the floor's force after every step."""
         while self.time < until * (1.0 - 1e-12):
             stop = self.time + 0.5 * self.step if trace else until * (1.0 - 1e-12)
-            if advance_body(self.body, self.run, stop) != REACHED:
+            if self.advance_by(self.body, self.run, stop) != REACHED:
                 raise SteppingError(f"t = {self.time:.6g} s: no convergence at the step {self.step:.3g} s")
             self.run.clock[0].samples_drained = self.run.clock[0].samples
             if trace:

@@ -18,7 +18,7 @@ from scipy.sparse.linalg import spsolve
 from verification.bodies import Flight, free_run
 
 from contact.stepping.body import State
-from contact.stepping.integrator import advance
+from contact.stepping.integrator import UNPREPARED, advance
 from contact.stepping.scheme import Scheme, generalised_alpha
 from contact.stepping.state import RunState
 from fem.runtime.arrays import BoolArray, FloatArray
@@ -115,6 +115,13 @@ def static_error(order: int, cells: int) -> float:
     raise NewtonError(f"manufactured solution, {cells} cells of order {order}: no convergence")
 
 
+def interpreted(body: FullBody, run: RunState, until: float) -> int:
+    """`advance_body` by the interpreter, which calls the methods of the body."""
+    while (code := advance(body, run, until)) == UNPREPARED:
+        body.prepare(run.problem.scheme, float(run.clock[0].unprepared_step))
+    return code
+
+
 class DrivenBody(FullBody):
     """A full body under a source that makes a given motion exact.
 
@@ -128,6 +135,7 @@ class DrivenBody(FullBody):
     def fly(self, scheme: Scheme, step: float, end: float) -> Flight:
         """Step the body along its motion to `end` [s]."""
         self._flight = flight = free_run(self, step=step, scheme=scheme, ends=end)
+        flight.advance_by = interpreted
         state = flight.state
         position, velocity, acceleration = self.motion(0.0)
         state.position[:], state.velocity[:] = position.ravel(), velocity.ravel()
@@ -137,10 +145,6 @@ class DrivenBody(FullBody):
         self.start(state, 0.0)
         state.acceleration[:] = acceleration.ravel()
         return flight.advance(end)
-
-    def advance(self, run: RunState, until: float) -> int:
-        """`contact.stepping.integrator.advance`, by the interpreter."""
-        return advance(self, run, until)
 
     def __getattr__(self, operation: str) -> Callable[..., Any]:
         """What `contact.stepping.body` asks of a body, as its nodes do it."""
