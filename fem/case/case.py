@@ -1,7 +1,8 @@
 """The case: one container, one base motion and the settings of the run, read once and frozen.
 
 `load_case` reads a file or a shipped case into a `Case`; all other modules work with its attributes. All values are SI,
-the unit is part of every key. Defaults are in `fem.case.tables`, what follows from several keys with them.
+the unit is part of every key. Defaults are in `fem.case.tables`, and so is what follows from several keys
+(`all_tables.CaseContent`).
 """
 
 import hashlib
@@ -75,7 +76,10 @@ class Case(CaseContent):
 
     @property
     def row(self) -> tuple["Case", ...]:
-        """The case of each container of its row alone, its own first, if any; CaseError: a neighbour cannot be."""
+        """The case of each container of its row alone, its own first; empty without neighbours.
+
+        CaseError: a neighbour cannot be.
+        """
         row = []
         for number, neighbour in enumerate((None, *self.neighbour) if self.neighbour else ()):
             try:
@@ -113,7 +117,10 @@ class Case(CaseContent):
 
     @property
     def files(self) -> dict[str, data_files.DataFile]:
-        """Its mesh and motion files, by dotted key; CaseError: one is missing, or outside and not trusted."""
+        """Its mesh and motion files, by dotted key.
+
+        CaseError: one is missing, or outside its folder and not named on the command line.
+        """
         named = {"container.mesh_file": self.container.mesh_file}
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             if self.recorded is None and motion.kind == "table":

@@ -37,19 +37,21 @@ def doubts(name: str, component: Component, made: Component, *, scale: float, co
     if not STEPS[0] * (1.0 - 1e-6) <= step <= STEPS[1] * (1.0 + 1e-6):
         unusual = f"its samples are {step:.4g} s apart, and those of records {STEPS[0]:g} to {STEPS[1]:g} s"
         if not component.time_stated:
-            meant = [
+            fitting = (
                 f" (it would be {step * factor:.4g} s if its times are in {unit})"
                 for unit, factor in TIMES.items()
                 if STEPS[0] <= step * factor <= STEPS[1]
-            ]
+            )
+            meant = next(fitting, "")
             raise RecordError(
-                f"{name}: {unusual}{''.join(meant[:1])}; the file does not state the unit of its times: write it into "
+                f"{name}: {unusual}{meant}; the file does not state the unit of its times: write it into "
                 "a line above the numbers, such as 't [s]' or 't [ms]', or correct the times"
             )
         notes.append(unusual)
     if not confirmed:
         notes += _of_peak(name, component, float(np.abs(followed).max()), scale)
-    a, far, limit, sign = component.values, float(np.abs(x - x[0]).max()), TOO_FAR, ""
+    a, far, limit = component.values, float(np.abs(x - x[0]).max()), TOO_FAR
+    sign = ""
     if component.quantity == "acceleration" and a.size >= LEAST_SAMPLES:
         peak, mean = float(np.abs(a).max()), float(np.mean(a))
         if peak > 0.0 and (float(a.min()) >= 0.0 or float(a.max()) <= 0.0):
@@ -58,12 +60,14 @@ def doubts(name: str, component: Component, made: Component, *, scale: float, co
             sign = f"the mean of its accelerations is {abs(mean) / peak:.0%} of their peak"
             limit = TOO_FAR_ONE_WAY
     if far > limit:
+        lead = f"{sign}, and " if sign else ""
         raise RecordError(
-            f"{name}: {sign and f'{sign}, and '}the floor would move {far:.3g} m, and no floor does; is it a spectrum, "
+            f"{name}: {lead}the floor would move {far:.3g} m, and no floor does; is it a spectrum, "
             "is gravity or an offset in it, are its times in another unit, or does it need baseline = "
             '"mean" or "linear"?'
         )
-    notes += [sign] if sign else []
+    if sign:
+        notes.append(sign)
     if far > FAR:
         notes.append(
             f"it moves the floor by {far:.3g} m; is a baseline needed, or a unit or the times wrong?"
@@ -75,7 +79,8 @@ def _of_peak(name: str, component: Component, peak: float, scale: float) -> list
     unscaled = peak / abs(scale) if scale else 0.0
     limit = MOST_STATED_PEAK if component.unit_stated else MOST_PEAK
     number = unscaled / abs(component.factor)
-    usual = [  # the peak if the values were of another unit that makes it a usual one
+    # the peak if the values were of another unit that makes it a usual one
+    usual = [
         f"{number * UNITS[unit].factor:.3g} m/s2 if the values were {unit}"
         for unit in ("g", "m/s2", "gal", "mm/s2")
         if component.quantity == "acceleration"

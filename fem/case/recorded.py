@@ -30,7 +30,10 @@ class RecordedMotion:
 
 
 def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
-    """The motion of a table of the case whose kind is "table"; CaseError: no motion, or not as its keys say."""
+    """The motion of a table of the case whose kind is "table".
+
+    CaseError: its file is missing, is no motion, or does not fit its keys.
+    """
     try:
         return _recorded(case, table)
     except RecordError as error:

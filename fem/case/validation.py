@@ -90,14 +90,14 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
     """
     heading: dict[str, Any] = {}
     problems: list[Problem] = []
-    contact, unknown = data.get("contact"), data.get("uncertainty", {})
-    if isinstance(contact, dict) and isinstance(unknown, dict) and "mu_static" not in unknown:
+    contact, ranges = data.get("contact"), data.get("uncertainty", {})
+    if isinstance(contact, dict) and isinstance(ranges, dict) and "mu_static" not in ranges:
         ends = contact.get("mu_static")
         if isinstance(ends, list) and len(ends) == 2 and all(isinstance(end, int | float) for end in ends):
             # contact.mu_static = [low, high] is its middle, and its range in [uncertainty]
             low, high = map(float, ends)
             contact = {**contact, "mu_static": short(0.5 * (low + high))}
-            data = {**data, "contact": contact, "uncertainty": {**unknown, "mu_static": [low, high]}}
+            data = {**data, "contact": contact, "uncertainty": {**ranges, "mu_static": [low, high]}}
     for key, value in data.items():
         if key in TABLES and not isinstance(value, dict):
             reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
@@ -155,8 +155,12 @@ def read_table(
     """Values as given, values by field with defaults as far as readable, and problems."""
     known = known_keys(model)
     problems = []
-    for key in (key for key in content if key not in known):
-        reason = left_words(f"{name}.{key}")
+    for key in content:
+        if key in known:
+            continue
+        if words := left_words(f"{name}.{key}"):
+            problems.append(Problem(table=name, key="", reason=f"{key!r} {words}"))
+            continue
         elsewhere = [
             f"[{other}]" for other, table in TABLES.items() if other != name and key in known_keys(table)
         ]
@@ -167,7 +171,7 @@ def read_table(
         else:
             way_out = did_you_mean(key, known)
         unknown = f"unknown key {key[:80]!r}{'; ' + way_out if way_out else ''} (known: {', '.join(known)})"
-        problems.append(Problem(table=name, key="", reason=f"{key!r} {reason}" if reason else unknown))
+        problems.append(Problem(table=name, key="", reason=unknown))
     given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
         given["box"], of_boxes = _read_rows(

@@ -48,9 +48,9 @@ def with_joints(case: Case, floor: Contact, mass: float, penalty: float) -> Cont
     """
     stack, friction, chosen, depth = case.stack, case.joint_friction, case.contact, case.container.depth_m
     faces = [shared_face(*pair) for pair in pairwise(stack)]
+    # a point for each of the two corners of both boxes
     springs = np.repeat([0.5 * penalty * (right - left) * depth for left, right in faces], CORNERS)
     damping = relaxation_time(case.joints.dashpot, mass, penalty * stack[0].width * depth)
-
     joints = appended(
         floor,
         springs.size,
@@ -145,17 +145,36 @@ def make_stack_state(stack: LooseStack | FullStack) -> State:
     return make_state(coordinates, beneath.faces.weight.size, monitors, beneath.mass.size)
 
 
-def settle(stack: LooseStack | FullStack, contact: Contact, state: State, **moving: Any) -> FloatArray:
-    """Write the state of a stack at rest, as `settle_stack` with these arguments.
+def settle(
+    stack: LooseStack | FullStack,
+    contact: Contact,
+    state: State,
+    *,
+    gravity: float,
+    place: tuple[float, float] = (0.0, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.0),
+    lift_velocity: float = 0.0,
+) -> FloatArray:
+    """Write the state of a stack at rest, as `contact.stepping.loose_stack.settle_stack`.
 
     Returns:
         The forces on its corners, along x and z, shape (N, 4, 2) [N].
     """
     if isinstance(stack, FullStack):
-        stack.settle(contact, state, **moving)
+        stack.settle(
+            contact, state, gravity=gravity, place=place, velocity=velocity, lift_velocity=lift_velocity
+        )
         stack = stack.stack
     else:
-        settle_stack(stack, contact, state, **moving)
+        settle_stack(
+            stack,
+            contact,
+            state,
+            gravity=gravity,
+            place=place,
+            velocity=velocity,
+            lift_velocity=lift_velocity,
+        )
     return stack.corners.force.reshape(-1, CORNERS, 2)
 
 

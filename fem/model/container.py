@@ -23,7 +23,7 @@ from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, sta
 from mesh.container import ContainerMesh
 from mesh.errors import MeshError
 from mesh.region import Region
-from mesh.stack import box_mesh, mesh_of_row
+from mesh.stack import MeshArrays, box_mesh, mesh_of_row
 
 ROUNDED = 9  #: decimals of the numbers by which boxes are equal
 
@@ -44,7 +44,9 @@ class Container:
     #: row the corners that touch, in the order of `contact.interface.faces`, before these
     nodes: IntArray
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
-    response: StaticResponse  #: none of a loose stack, a rigid container
+    #: to forces at its contact nodes; of a container of a row at those it has alone, of which the first two are the
+    #: same; none of a loose stack, a row as a whole, a rigid container
+    response: StaticResponse
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
@@ -152,7 +154,7 @@ def without_links(case: Case, container: Container) -> Container:
     return replace(container, nodes=container.nodes[:points], response=container.response.of_first(points))
 
 
-def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
+def _assembled(case: Case, mesh: ContainerMesh | MeshArrays) -> FiniteElements:
     box = case.container
     order = case.solver.order
     return assemble(mesh, youngs_modulus=box.youngs_modulus_Pa, poisson_ratio=box.poisson_ratio, order=order)
@@ -226,7 +228,14 @@ def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: S
     corners = np.concatenate([place[box.nodes] for box, place in zip(boxes, nodes, strict=True)])
     touching = make_faces(elements.nodes[corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
     return _of_bodies(
-        case, mesh, elements, support, corners[touching], np.concatenate(monitors[::-1]), boxes, nodes
+        case,
+        mesh,
+        elements,
+        support,
+        touching=corners[touching],
+        monitors=np.concatenate(monitors[::-1]),
+        boxes=boxes,
+        nodes=nodes,
     )
 
 
@@ -242,6 +251,7 @@ def _of_bodies(
     mesh: ContainerMesh,
     elements: FiniteElements,
     support: Support,
+    *,
     touching: IntArray,
     monitors: IntArray,
     boxes: Sequence[Container],
@@ -292,8 +302,17 @@ def _beside_one_another(case: Case, row: Sequence[Container]) -> Container:
     ]
     corners = np.concatenate([place[box.nodes] for box, place in zip(boxes, nodes, strict=True)])
     faces = make_row(np.ones((corners.size, 2)), *facing(places), np.zeros(len(row)), *np.zeros((2, 0)))
-    touching, monitors = corners[faces.corner[:, TOUCHING]], nodes[0][row[0].monitors]
-    return _of_bodies(case, meshes[0], elements, row[0].support, touching, monitors, boxes, nodes, row)
+    return _of_bodies(
+        case,
+        meshes[0],
+        elements,
+        row[0].support,
+        touching=corners[faces.corner[:, TOUCHING]],
+        monitors=nodes[0][row[0].monitors],
+        boxes=boxes,
+        nodes=nodes,
+        row=row,
+    )
 
 
 def facing(places: Places) -> tuple[IntArray, FloatArray]:

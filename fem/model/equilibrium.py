@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -149,7 +148,7 @@ def _of_row(case: Case, container: Container, gravity: float) -> Equilibrium:
     return replace(row[0], contact=contact, body=_linked(body, line), stance=None, row=tuple(row))
 
 
-def _linked(body: Any, line: FloatArray | None) -> Any:
+def _linked(body: Body, line: FloatArray | None) -> Body:
     """A body with its links."""
     if isinstance(body, FullBody | FullStack):
         body.line = line
@@ -218,7 +217,7 @@ def _contact(case: Case, container: Container, springs: FloatArray) -> Contact:
     )
 
 
-def _body(case: Case, container: Container, contact: Contact, stance: Stance) -> Any:
+def _body(case: Case, container: Container, contact: Contact, stance: Stance) -> Body:
     """One body, as it is stepped."""
     elements, mesh = container.elements, container.mesh
     gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
@@ -228,21 +227,7 @@ def _body(case: Case, container: Container, contact: Contact, stance: Stance) ->
     links = slice(len(nodes) - len(case.links), None)
     if case.links and case.solver.model != "full":  # it has points wherever they are asked for
         placed[links] = places_of_links(case)
-    # gaps are measured from the points upright at rest; of one that starts tilted, from those of the undeformed
-    # container on a hard floor
-    at_rest = placed
-    if case.initial.rotation_rad == 0.0 and case.links:
-        turn = rotation_matrix(stance.rotation)
-        shape = placed - np.asarray(mesh.centroid)
-        if case.solver.model != "rigid":
-            own = (stance.with_points(len(placed)).force @ turn).ravel()
-            response = container.response.displacement
-            displacement = response[:, nodes]
-            if case.solver.model == "reduced":
-                displacement[:, links] = shapes_at(places_of_links(case), elements.nodes, response)
-            shape = shape + np.tensordot(own, displacement, axes=1)
-        at_rest = np.asarray(stance.centre) + shape @ turn.T
-    line = lines_at(case, at_rest[links], mesh.width)
+    line = lines_at(case, _at_rest(case, container, placed, stance)[links], mesh.width)
     if case.solver.model == "full":
         body = FullBody(elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping)
         return _linked(body, line)
@@ -260,6 +245,26 @@ def _body(case: Case, container: Container, contact: Contact, stance: Stance) ->
         tolerance=POINT_TOLERANCE * penetration,
     )
     return _linked(floating, line)
+
+
+def _at_rest(case: Case, container: Container, placed: FloatArray, stance: Stance) -> FloatArray:
+    """Contact points (n, 2) from which gaps are measured: those of the container upright at rest [m].
+
+    Of one that starts tilted, those of the undeformed container on a hard floor.
+    """
+    if case.initial.rotation_rad != 0.0 or not case.links:
+        return placed
+    turn = rotation_matrix(stance.rotation)
+    shape = placed - np.asarray(container.mesh.centroid)
+    if case.solver.model != "rigid":
+        own = (stance.with_points(len(placed)).force @ turn).ravel()
+        response = container.response.displacement
+        displacement = response[:, container.nodes]
+        if case.solver.model == "reduced":
+            places, nodes = places_of_links(case), container.elements.nodes
+            displacement[:, -len(places) :] = shapes_at(places, nodes, response)
+        shape = shape + np.tensordot(own, displacement, axes=1)
+    return np.asarray(stance.centre) + shape @ turn.T
 
 
 def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:

@@ -160,8 +160,26 @@ def motion_notes(motion: BaseMotion, table: MotionKey = "motion") -> list[str]:
     return notes
 
 
+def _plausible(motion: TableMotion, table: MotionKey) -> TableMotion:
+    """The motion, if it lasts into the run and no acceleration is too large; else a CaseError."""
+    if motion.times[-1] <= 0.0:
+        raise CaseError(
+            f"[{table}] file: its times end at {motion.times[-1]:g} s, and the run begins at t = 0; shift them"
+        )
+    limits, peak = q.PEAK_ACCELERATION, motion.peak_acceleration
+    if limits.allows(peak):
+        return motion
+    guess = limits.guess(peak) or "is its unit right, and are displacements sampled closely enough?"
+    raise CaseError(
+        f"[{table}] file: its accelerations reach {peak:.4g} m/s2, at most {limits.most:g} m/s2 are accepted; {guess}"
+    )
+
+
 def build_motion(case: Case, table: MotionKey = "motion") -> SingleMotion:
-    """The motion [motion] of the case, or [vertical], positive upward; CaseError: its file, or an impossible motion."""
+    """The motion [motion] of the case, or [vertical], positive upward.
+
+    CaseError: a missing or unfit file, or an impossible motion.
+    """
     motion = case.vertical if table == "vertical" else case.motion
 
     def given(key: str) -> Any:
@@ -194,21 +212,7 @@ def build_motion(case: Case, table: MotionKey = "motion") -> SingleMotion:
             case "table":
                 made = recorded_motion(case, table).motion
                 recorded = TableMotion(times=made.times, values=made.values, quantity=motion.quantity)
-                if recorded.times[-1] <= 0.0:
-                    raise CaseError(
-                        f"[{table}] file: its times end at {recorded.times[-1]:g} s, and the run begins at t = 0; "
-                        "shift them"
-                    )
-                limits, peak = q.PEAK_ACCELERATION, recorded.peak_acceleration
-                if limits.allows(peak):
-                    return recorded
-                guess = (
-                    limits.guess(peak) or "is its unit right, and are displacements sampled closely enough?"
-                )
-                raise CaseError(
-                    f"[{table}] file: its accelerations reach {peak:.4g} m/s2, at most {limits.most:g} m/s2 are "
-                    f"accepted; {guess}"
-                )
+                return _plausible(recorded, table)
         assert_never(motion.kind)
     except CaseError:
         raise

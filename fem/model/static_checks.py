@@ -364,7 +364,10 @@ def static_checks_of(
 
 
 def wind_check(case: Case, mesh: ContainerMesh, static: StaticChecks) -> ActionCheck:
-    """Sliding and overturning of a container as it is under its [wind]; CaseError: it is higher than the rule holds."""
+    """Sliding and overturning of a container as it is under its [wind].
+
+    CaseError: it is higher than the rule or the pressure holds for.
+    """
     half, height = static.radius * math.sin(static.slenderness_angle), static.centroid
     body = LooseBody(
         block=RigidBlock(

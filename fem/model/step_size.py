@@ -103,6 +103,22 @@ def largest_step_of(
     return largest, np.array([*kept[1:], duration])
 
 
+def _struck_mass(case: Case, container: Container) -> float:
+    """Effective mass of a corner in the first instant of an impact [kg]; of several bodies the least.
+
+    Of a rigid container that of the whole, rotating body; of an elastic one little more than the corner's own.
+    """
+    if case.solver.model == "full":
+        return float(container.elements.nodal_mass[container.nodes[0]])
+    masses = []
+    for body in container.bodies:
+        for corner in body.nodes if container.boxes else body.nodes[:1]:
+            arm = float(body.elements.nodes[corner, 0] - body.mesh.centroid[0])
+            elastic = float(np.sum(body.basis.shapes[:, corner, 1] ** 2))
+            masses.append(1.0 / (1.0 / body.mesh.mass + arm * arm / body.mesh.inertia + elastic))
+    return min(masses)
+
+
 def control_of(
     case: Case,
     container: Container,
@@ -132,17 +148,7 @@ def control_of(
     spring, dashpots = float(contact.normal_stiffness[0]), contact.normal_stiffness * contact.relaxation_time
     joints = dashpots[: dashpots.size - len(case.links)]
     dashpot = float(joints.max() if container.boxes else dashpots[0])
-    # effective mass of a corner in the first instant of an impact, of several bodies the least: of a rigid container
-    # that of the whole, rotating body; of an elastic one little more than the corner's own
-    masses = []
-    for body in container.bodies:
-        for corner in body.nodes if container.boxes else body.nodes[:1]:
-            arm = float(body.elements.nodes[corner, 0] - body.mesh.centroid[0])
-            elastic = float(np.sum(body.basis.shapes[:, corner, 1] ** 2))
-            masses.append(1.0 / (1.0 / body.mesh.mass + arm * arm / body.mesh.inertia + elastic))
-    struck = min(masses)
-    if case.solver.model == "full":
-        struck = float(container.elements.nodal_mass[container.nodes[0]])
+    struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
     closing = CLOSING_SHARE_OF_TIME / (dashpot / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass))
     return Control(
@@ -179,7 +185,10 @@ def control_of(
 
 
 def scheme_of(case: Case, container: Container, penalty: float, control: Control, contact: Contact) -> Scheme:
-    """Time-stepping scheme; `penalty`: of the base [Pa/m]. CaseError: a Newmark run that would gain energy."""
+    """Time-stepping scheme; `penalty`: normal stiffness of the base [Pa/m].
+
+    CaseError: a Newmark run that would gain energy.
+    """
     solver = case.solver
     if solver.scheme == "generalised-alpha":
         return generalised_alpha(solver.spectral_radius)

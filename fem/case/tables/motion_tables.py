@@ -65,7 +65,7 @@ def _too_strong(motion: Any) -> str:
 
 
 def _amplitude_refused(motion: Any) -> str:
-    amplitude = motion.full_amplitude
+    amplitude = motion.unscaled_amplitude
     if (
         motion.amplitude_m is not None
         or amplitude is None
@@ -225,10 +225,12 @@ class HarmonicKeys(CaseTable):
         return math.sqrt(ratio) if ratio > 0.0 else None
 
     @property
-    def full_amplitude(self) -> float | None:
-        """A of x = A sin(Omega t + phase) from the keys given [m]; None where they do not determine it."""
-        if self.kind != "harmonic" or self.amplitude_m is not None:
-            return self.amplitude_m if self.kind == "harmonic" else None
+    def unscaled_amplitude(self) -> float | None:
+        """A of x = A sin(Omega t + phase), without its factor [m]; None where the keys do not determine it."""
+        if self.kind != "harmonic":
+            return None
+        if self.amplitude_m is not None:
+            return self.amplitude_m
         if self.omega is None or self.peak_acceleration_m_s2 is None:
             return None
         return self.peak_acceleration_m_s2 / self.omega**2
@@ -331,7 +333,7 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
     @property
     def amplitude(self) -> float:
         """A of a harmonic motion x = A sin(Omega t + phase) [m], with its factor; 0 for every other kind."""
-        return abs(self.factor) * (self.full_amplitude or 0.0)
+        return abs(self.factor) * (self.unscaled_amplitude or 0.0)
 
     @property
     def period(self) -> float:

@@ -330,6 +330,7 @@ QUANTITIES = {unknown.key: unknown.quantity for unknown in UNKNOWN if isinstance
 
 #: a range [low, high], or that the value of the case is known
 Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["held", "known"] | None
+Tried = bool | Literal["held", "known"] | None  #: whether the other is tried
 
 
 class UncertaintyTable(CaseTable):
@@ -409,20 +410,20 @@ class UncertaintyTable(CaseTable):
         "of a vertical harmonic beside a horizontal one; default: the whole turn", [0.0, 3.14]
     )
     phase_rad: Unknown = optional_key("harmonic: of the motion; default: held", [0.0, 3.14])
-    sign: bool | Literal["held", "known"] | None = optional_key(
+    sign: Tried = optional_key(
         "record or pulse: whether it may come from the other side; default: true where left and right differ",
         True,
     )
-    vertical_sign: bool | Literal["held", "known"] | None = optional_key(
+    vertical_sign: Tried = optional_key(
         "record or pulse: true tries the vertical motion with the other sign; default: false", True
     )
-    support: bool | Literal["held", "known"] | None = optional_key(
+    support: Tried = optional_key(
         "corners and flat: whether the base may touch as the other does; default: true", True
     )
-    start: bool | Literal["held", "known"] | None = optional_key(
+    start: Tried = optional_key(
         "harmonic: true tries the other motion.start, a jump of the floor's velocity; default: false", True
     )
-    ramp: bool | Literal["held", "known"] | None = optional_key(
+    ramp: Tried = optional_key(
         "harmonic: whether a ramp of two cycles may begin it, or none; default: true", True
     )
     draws: Annotated[int, Strict(), q.DRAWS] = case_key("runs in which all of these are drawn at once", 32)
