@@ -150,6 +150,7 @@ def tilted(
     corner = point.shape[0] - 1 if rotation > 0.0 else 0
     forces = np.zeros_like(point)
     if camber.any():
+        refusal = "the tilted base does not settle on its points"
         share, rise = np.zeros(len(point)), 0.0
         share[corner] = 1.0
         turned, arms = np.kron(np.eye(len(point)), turn), point @ turn.T
@@ -158,12 +159,19 @@ def tilted(
             arm, before = share @ arms, share
             force = held(arm)
             vertical = own[1::2, 1::2] + force[0] / force[1] * own[1::2, 0::2]
-            normal, (rise,) = pressed(float(force[1]), arms[:, 1] + camber, vertical, normal_stiffness)
+            normal, (rise,) = pressed(
+                float(force[1]),
+                arms[:, 1] + camber,
+                vertical,
+                normal_stiffness,
+                rounding=ROUNDING_OF_CAMBER,
+                refusal=refusal,
+            )
             share = normal / force[1]
             if np.abs(share - before).max() <= ROUNDING_OF_CAMBER:
                 break
         else:
-            raise SettlingError("the tilted base does not settle on its points")
+            raise SettlingError(refusal)
         forces[:] = share[:, None] * force
         place = corner_x + share @ (point[:, 0] - point[corner, 0])  # on the floor, after it has rolled there
         centre = place - share @ (arms[:, 0] + (own @ forces.ravel())[0::2]), float(rise)
@@ -190,32 +198,42 @@ def pressed(
     compliance: FloatArray,
     stiffness: FloatArray,
     *,
+    rounding: float,
+    refusal: str,
     lever: tuple[FloatArray, FloatArray] | None = None,
     carrying: BoolArray | None = None,
-    rounding: float = ROUNDING_OF_CAMBER,
-    refusal: str = "the tilted base does not settle on its points",
 ) -> tuple[FloatArray, FloatArray]:
-    """Normal forces (n,) [N] on unilateral springs under a load, and its rise [m], and rotation [rad].
+    """Normal forces [N] on unilateral springs under a load, and how it moves.
 
     Points change between carrying and open until none is in tension or below the floor: all that are wrong at once;
     where that does not make them fewer, one at a time, the deepest first, for the points of a cambered base may
     otherwise alternate for ever.
 
     Args:
-        height: (n,) of the points above the load's own place [m]; compliance: (n, n) elastic [m/N].
+        load: [N]; height: (n,) of the points above the load's own place [m].
+        compliance: (n, n) elastic [m/N]; stiffness: (n,) of the springs [N/m].
+        rounding: force over the load within which a point that just touches keeps its state.
+        refusal: text of the error.
         lever: (n,) rise of the points by a rotation, and moments of their forces [m]; None: the load does not turn.
         carrying: (n,) the points to begin with; None: the lowest.
-        rounding: force over the load within which a point that just touches keeps its state.
+
+    Returns:
+        (n,) forces; (1,) rise [m], or (2,) rise and rotation [rad] with `lever`.
+
+    Raises:
+        SettlingError: the points do not carry the load.
     """
     n = height.size
-    alone = np.ones((1, n))
-    rises, moments = (alone, alone) if lever is None else (np.vstack([alone, row]) for row in lever)
+    rises = moments = np.ones((1, n))
+    if lever is not None:
+        rises, moments = np.vstack([rises, lever[0]]), np.vstack([moments, lever[1]])
+    free = len(rises)
     carrying = height <= height.min() if carrying is None else carrying
     fewest: float = math.inf
     spare = SPARE
     for _ in range(MOST_STEPS * n):
         chosen = np.flatnonzero(carrying)
-        m, free = chosen.size, len(rises)
+        m = chosen.size
         # Unknowns: normal forces, and how the load moves.
         system, right = np.zeros((m + free, m + free)), np.zeros(m + free)
         system[:m, :m] = compliance[np.ix_(chosen, chosen)] + np.diag(1.0 / stiffness[chosen])

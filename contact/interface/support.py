@@ -97,9 +97,8 @@ def cambered(support: Support, x: FloatArray, camber: float) -> Support:
     edge = float(x[-1])
     curvature = 2.0 * camber / edge**2
     usual = float(np.median(np.diff(x)))
-    kept = (x[-1] - np.abs(x) >= LEAST_DISTANCE * usual) | (
-        np.abs(x) >= x[-1]
-    )  # those that do not crowd at the edge
+    inside = edge - np.abs(x)
+    kept = (inside <= 0.0) | (inside >= LEAST_DISTANCE * usual)  # none that crowd at the edge
     x, index = x[kept], support.index[kept]
     distance = np.diff(x)
     touching = distance < 2.0 * float(np.median(distance))  # not across the gap between feet

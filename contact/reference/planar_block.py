@@ -348,14 +348,6 @@ class PlanarBlock:
             direction=state.direction,
         )
 
-    def rate(self, state: PlanarState, values: FloatArray, acceleration: Acceleration) -> FloatArray:
-        """Time derivative of the values while it moves in this state."""
-        if state.mode is PlanarMode.SLIDE:
-            friction = -state.direction * self.mu_kinetic * self.pressure(acceleration)
-            return np.array([values[1], friction - acceleration.x, 0.0, 0.0])
-        contact = self.contact(state, values, acceleration)
-        return np.array([values[1], contact.slip_acceleration, values[3], contact.tilt_acceleration])
-
     def _on_corner(
         self, values: FloatArray, side: int, direction: int, acceleration: Acceleration
     ) -> PlanarState:
@@ -418,7 +410,7 @@ def simulate_planar_block(
             hop = 0.5 * values[3] / fall if fall * values[3] > 0.0 else math.inf
             first_step = min(0.01 / frequency, hop)
         passage = flow(
-            rate=None if state.mode is PlanarMode.REST else partial(block.rate, state),
+            rate=None if state.mode is PlanarMode.REST else partial(_rate, block, state),
             guards=_guards(block, state),
             state=values,
             start=time,
@@ -507,3 +499,14 @@ def _guards(block: PlanarBlock, state: PlanarState) -> tuple[Guard, ...]:
     if state.mode is PlanarMode.ROCK:
         return (*corner, Guard(name="slips", margin=stick))
     return (*corner, stops, Guard(name="leaves the floor", margin=normal))
+
+
+def _rate(
+    block: PlanarBlock, state: PlanarState, values: FloatArray, acceleration: Acceleration
+) -> FloatArray:
+    """Time derivative of slip, slip velocity, tilt, tilt rate."""
+    if state.mode is PlanarMode.SLIDE:
+        friction = -state.direction * block.mu_kinetic * block.pressure(acceleration)
+        return np.array([values[1], friction - acceleration.x, 0.0, 0.0])
+    contact = block.contact(state, values, acceleration)
+    return np.array([values[1], contact.slip_acceleration, values[3], contact.tilt_acceleration])

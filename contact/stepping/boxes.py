@@ -18,14 +18,12 @@ POINTS_OF_GAP = 4  #: contact points of two bodies that face each other
 
 
 @compiled
-def follow_boxes(run: RunState, step: float, apart: float, loose: bool | None) -> None:
+def follow_boxes(run: RunState, step: float, apart: float) -> None:
     """Update openings, rotations, falls, gaps and the mode of a loose stack from the step about to be accepted.
 
     A box falls when it has turned by 90 degrees, or when a corner of an upper box meets the floor. `apart`: see
     `links.follow_touch`.
     """
-    if loose is None:
-        return
     new, track, control = run.attempt.new, run.track[0], run.problem.control
     rocks, slides = track.mode in (ROCK, SLIDE_ROCK), track.mode in (SLIDE, SLIDE_ROCK)
     for j in range(run.joints.shape[0]):
@@ -56,19 +54,19 @@ def follow_boxes(run: RunState, step: float, apart: float, loose: bool | None) -
     last = run.joints.shape[0] - 1
     for g in range(last if in_a_row(run) else 0):  # the force in a gap is that of its four points together
         first = run.joints[last].end + POINTS_OF_GAP * g
-        closest, gap, force, speed = NEVER, NEVER, 0.0, 0.0
+        before, after, force, speed = NEVER, NEVER, 0.0, 0.0
         for i in range(first, first + POINTS_OF_GAP):
             now, then = new.point[i, 1], run.old.point[i, 1]
-            closest = min(closest, then)
+            before = min(before, then)
             # a point of no weight is a corner beside the other body's side: its distance says nothing of the gap
             if run.problem.contact.normal_stiffness[i] > 0.0:
-                gap = min(gap, now)
+                after = min(after, now)
             force += new.force[i, 1]
             if now < 0.0 <= then:
                 speed = max(speed, run.old.descent[i, 0])
                 if run.clock[0].steps == 0:  # the velocity of a touch at t = 0 follows from the step alone
                     speed = max(speed, (then - now) / step)
-        follow_touch(run.links[g], force, (closest, gap), speed, apart)
+        follow_touch(run.links[g], force, (before, after), speed, apart)
 
 
 @inlined

@@ -49,25 +49,25 @@ def next_step(run: RunState) -> float:
     clock, control, old = run.clock[0], run.problem.control, run.old
     step = step_of_level(control.largest_step, clock.level)
     if step > control.closing_step:
-        first = step
+        closes = step  # time until a point touches [s], at most the step
         for i in range(old.point.shape[0]):
             if _rests_beside(old, i - 1, i, control.near) or _rests_beside(old, i + 1, i, control.near):
                 continue
             gap, speed, rate = old.point[i, 1], old.descent[i, 0], old.descent[i, 1]
-            if gap > 0.0 and speed * first + 0.5 * max(rate, 0.0) * first * first > gap:
+            if gap > 0.0 and speed * closes + 0.5 * max(rate, 0.0) * closes * closes > gap:
                 root = speed * speed + 2.0 * rate * gap
                 if root > control.closing_speed**2:
-                    first = min(first, 2.0 * gap / (speed + np.sqrt(root)))
+                    closes = min(closes, 2.0 * gap / (speed + np.sqrt(root)))
             elif speed > control.closing_speed and -0.5 * control.closing_step * speed < gap <= 0.0:
-                first = 0.0
-        due = max(first, control.closing_step)
+                closes = 0.0
+        due = max(closes, control.closing_step)
         if due < step:  # use a size of the sequence: a body that factors a matrix needs few different sizes
             due_level = step_level(control.largest_step, due)
             step = step_of_level(control.largest_step, due_level)
             if due == control.closing_step:
                 clock.level = due_level
     if step > control.event_step:
-        first = step
+        switches = step  # time until a joint reaches its limit or stops [s], at most the step
         for j in range(run.joints.shape[0]):
             joint = run.joints[j]
             if joint.sliding == 0:
@@ -78,9 +78,9 @@ def next_step(run: RunState) -> float:
                 left, rate = abs(joint.slip_velocity), -joint.slip_acceleration
                 if joint.slip_velocity < 0.0:
                     rate = -rate
-            if rate * first > left > 0.0:
-                first = left / rate
-        due = max(first, control.event_step)
+            if rate * switches > left > 0.0:
+                switches = left / rate
+        due = max(switches, control.event_step)
         if due < step:
             step = step_of_level(control.largest_step, step_level(control.largest_step, due))
     while run.problem.breaks[clock.next_break] <= clock.time:

@@ -31,10 +31,10 @@ from contact.stepping.step import indent
 @inlined
 def lose_at_impacts(body: Any, run: RunState, loose: bool | None) -> None:
     """Exchange the pivots that are due in the step about to be accepted; the container's landing is known already."""
-    new, change = run.attempt.new, run.attempt.change
+    new = run.attempt.new
     for j in range(run.joints.shape[0]):
-        joint, share = run.joints[j], run.joints[j].impact_share
-        if share == 1.0:
+        joint = run.joints[j]
+        if joint.impact_share == 1.0:
             continue
         after, gaps = new.pose, side_gaps(run, j, new)
         if loose is not None:
@@ -50,47 +50,9 @@ def lose_at_impacts(body: Any, run: RunState, loose: bool | None) -> None:
                 run.old.boxes[j, interface.ANGULAR_VELOCITY],
                 rocks,
             )
-        landed = exchanges_pivot(joint, gaps, after[interface.ANGULAR_VELOCITY])  # -1 left, 1 right
-        if landed == 0 or carrier_of(run, j) >= 0:
-            continue
-        begin, end = points_of(run, j)
-        corner = begin if landed == -1 else end - 1
-        if joint.below >= 0 and new.point[corner - landed, 1] < new.point[corner, 1]:
-            corner -= landed
-        left, up = place_of(run, j, corner)
-        x, z = left + run.floor[1, 0], up + run.lift[1, 0]
-        boxes = j + 1 if in_a_row(run) else run.joints.shape[0]
-        momentum, inertia, moment = 0.0, 0.0, 0.0
-        for b in range(j, boxes):
-            pose = new.pose
-            if loose is not None:
-                pose = new.boxes[b]
-            mass, own = run.joints[b].mass, run.joints[b].inertia
-            arm_x, arm_z = pose[interface.CENTRE_X] - x, pose[interface.CENTRE_Z] - z
-            velocity_x = pose[interface.VELOCITY_X] - run.floor[1, 1]
-            velocity_z = pose[interface.VELOCITY_Z] - run.lift[1, 1]
-            momentum += (
-                mass * (arm_z * velocity_x - arm_x * velocity_z) + own * pose[interface.ANGULAR_VELOCITY]
-            )
-            inertia += mass * (arm_x * arm_x + arm_z * arm_z) + own
-            moment += mass * arm_z
-        turn = (1.0 - share) * momentum / inertia
-        kinetic = new.energy[interface.KINETIC]
-        for i in range(begin, end):
-            point_x, point_z = place_of(run, j, i)
-            new.drift[i, 0] -= turn * (point_z - up)
-            new.descent[i, 0] -= turn * (point_x - left)
-        interface.shift_velocity(body, new, (-turn * z, turn * x, turn), (j, boxes))
-        interface.complete(body, new, run.floor[1, 0], run.lift[1, 0], run.lift[1, 1])
-        shift_links(run, links_of(body), turn, left, up, j, boxes)
-        indent(
-            run.problem.contact, new.point, new.crushed
-        )  # behind the arms, which are of heights, not of gaps
-        lost = (1.0 - share**2) * momentum * momentum / (2.0 * inertia)
-        work = -turn * moment * run.floor[1, 1]
-        change[IMPACTS] += lost
-        change[BASE_WORK] += work
-        change[IMBALANCE] += work - lost - (new.energy[interface.KINETIC] - kinetic)
+        landed = exchanges_pivot(joint, gaps, after[interface.ANGULAR_VELOCITY])
+        if landed != 0 and carrier_of(run, j) < 0:
+            lose_at_impact(body, run, j, landed, loose)
 
 
 @inlined
@@ -111,3 +73,44 @@ def place_of(run: RunState, j: int, i: int) -> tuple[float, float]:
         corner = touching_corner(i)
         return new.corner[corner, 0], new.corner[corner, 1]
     return new.point[i, 0], new.point[i, 1] - new.crushed[i]
+
+
+@inlined
+def lose_at_impact(body: Any, run: RunState, j: int, landed: int, loose: bool | None) -> None:
+    """Multiply the angular momentum about the `landed` corner (-1 left, 1 right) of joint j, and book it."""
+    new, share, change = run.attempt.new, run.joints[j].impact_share, run.attempt.change
+    begin, end = points_of(run, j)
+    corner = begin if landed == -1 else end - 1
+    if run.joints[j].below >= 0 and new.point[corner - landed, 1] < new.point[corner, 1]:
+        corner -= landed
+    left, up = place_of(run, j, corner)
+    x, z = left + run.floor[1, 0], up + run.lift[1, 0]
+    boxes = j + 1 if in_a_row(run) else run.joints.shape[0]
+    momentum, inertia, moment = 0.0, 0.0, 0.0
+    for b in range(j, boxes):
+        pose = new.pose
+        if loose is not None:
+            pose = new.boxes[b]
+        mass, own = run.joints[b].mass, run.joints[b].inertia
+        arm_x, arm_z = pose[interface.CENTRE_X] - x, pose[interface.CENTRE_Z] - z
+        velocity_x = pose[interface.VELOCITY_X] - run.floor[1, 1]
+        velocity_z = pose[interface.VELOCITY_Z] - run.lift[1, 1]
+        momentum += mass * (arm_z * velocity_x - arm_x * velocity_z) + own * pose[interface.ANGULAR_VELOCITY]
+        inertia += mass * (arm_x * arm_x + arm_z * arm_z) + own
+        moment += mass * arm_z
+    turn = (1.0 - share) * momentum / inertia
+    kinetic = new.energy[interface.KINETIC]
+    for i in range(begin, end):
+        point_x, point_z = place_of(run, j, i)
+        new.drift[i, 0] -= turn * (point_z - up)
+        new.descent[i, 0] -= turn * (point_x - left)
+    interface.shift_velocity(body, new, (-turn * z, turn * x, turn), (j, boxes))
+    interface.complete(body, new, run.floor[1, 0], run.lift[1, 0], run.lift[1, 1])
+    shift_links(run, links_of(body), turn, left, up, j, boxes)
+    # behind the arms, which are of heights, not of gaps
+    indent(run.problem.contact, new.point, new.crushed)
+    lost = (1.0 - share**2) * momentum * momentum / (2.0 * inertia)
+    work = -turn * moment * run.floor[1, 1]
+    change[IMPACTS] += lost
+    change[BASE_WORK] += work
+    change[IMBALANCE] += work - lost - (new.energy[interface.KINETIC] - kinetic)

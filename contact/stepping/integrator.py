@@ -58,6 +58,33 @@ REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
+@compiled(inline=True)
+def close_step(run: RunState, step: float, iterations: int) -> None:
+    """Make the step the state of the run and add its terms to the ledger."""
+    clock = run.clock[0]
+    for row in range(LEDGER_ROWS):
+        run.ledger[row] += run.attempt.change[row]
+    if run.track[0].overturned_at == NEVER:  # the impact after overturning does not matter
+        clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
+        clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
+        clock.dissipated = dissipation(run.ledger)
+    clock.rolling_before = clock.rolling
+    clock.time += step
+    clock.steps += 1
+    clock.iterations += iterations
+    clock.smallest_step = min(clock.smallest_step, step)
+    for i in range(run.old.numbers.size):  # all but the monitored points
+        run.old.numbers[i] = run.attempt.new.numbers[i]
+    if run.joints.shape[0] > 1:
+        clock.spring_energy = spring_energy(run.problem.contact, run.old.point, run.old.stick)
+    for j in range(run.joints.shape[0]):
+        run.joints[j].slip += run.joints[j].shift
+        run.joints[j].opening = run.joints[j].opens
+    for k in range(3):
+        run.floor[0, k] = run.floor[1, k]
+        run.lift[0, k] = run.lift[1, k]
+
+
 @inlined
 def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
     """Change to the frame of the floor as its motion ends, with this velocity [m/s]; nothing gets an impulse."""
@@ -133,35 +160,15 @@ def advance(body: Any, run: RunState, until: float) -> int:
         counts = IMPACT_GAP * control.width * control.slenderness_angle
         follow_links(run, step, links, counts)
         update_observables(run, step)
-        follow_boxes(run, step, counts, loose)
+        if loose is not None:
+            follow_boxes(run, step, counts)
         follow_contents(body, run, step)
         clock.samples = sample(run, history, clock.samples, clock.samples_drained, step, loose)
         clock.frames = sample(run, frames, clock.frames, clock.frames_drained, step, loose)
         lose_at_impacts(body, run, loose)
         keep_most_strained_step(run, step)
-        # The step becomes the state of the run.
+        close_step(run, step, iterations)
         stacked = run.joints.shape[0] > 1
-        for row in range(LEDGER_ROWS):
-            run.ledger[row] += run.attempt.change[row]
-        if track.overturned_at == NEVER:  # the impact after overturning does not matter
-            clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
-            clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
-            clock.dissipated = dissipation(run.ledger)
-        clock.rolling_before = clock.rolling
-        clock.time += step
-        clock.steps += 1
-        clock.iterations += iterations
-        clock.smallest_step = min(clock.smallest_step, step)
-        for i in range(run.old.numbers.size):  # all but the monitored points
-            run.old.numbers[i] = run.attempt.new.numbers[i]
-        if stacked:
-            clock.spring_energy = spring_energy(run.problem.contact, run.old.point, run.old.stick)
-        for j in range(run.joints.shape[0]):
-            run.joints[j].slip += run.joints[j].shift
-            run.joints[j].opening = run.joints[j].opens
-        for k in range(3):
-            run.floor[0, k] = run.floor[1, k]
-            run.lift[0, k] = run.lift[1, k]
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         fading = SHORT_FADING if stacked or control.eager else FADING
         recent, not_held = max(min(used, 1.0), fading * clock.allowance_used), clock.growth_hold == 0

@@ -40,6 +40,17 @@ def friction_of(run: RunState, j: int, slid: float) -> float:
     return weakened_mu(contact.mu_static[first], contact.mu_kinetic[first], contact.weakening[first], slid)
 
 
+@inlined
+def weight_on(run: RunState, j: int) -> float:
+    """Weight of the boxes from a joint up [N]."""
+    weight = 0.0
+    for k in range(j, run.joints.shape[0]):
+        if k > j and run.joints[k].below < 0:
+            break
+        weight += run.joints[k].mass * (run.problem.control.gravity + run.lift[1, 2])
+    return weight
+
+
 @compiled(inline=True)
 def settle_friction(run: RunState, step: float, loose: bool | None, links: LinkedBody | None) -> bool:
     """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it.
@@ -60,13 +71,8 @@ def settle_friction(run: RunState, step: float, loose: bool | None, links: Linke
             if turned or joint.motion == NO_POINT:
                 holding, normal = holding_force(run, j, loose, links)
                 every = not abs(holding) <= mu_static * normal
-                weight = 0.0
-                for k in range(j, run.joints.shape[0]):
-                    if k > j and run.joints[k].below < 0:
-                        break
-                    weight += run.joints[k].mass * (run.problem.control.gravity + run.lift[1, 2])
                 # a stop within an impact does not last
-                if turned and not every and normal < IMPACT_LOAD * weight:
+                if turned and not every and normal < IMPACT_LOAD * weight_on(run, j):
                     slide(run, j, step, holding)
         elif run.problem.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
             holding, normal = holding_force(run, j, loose, links)

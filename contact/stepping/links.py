@@ -52,8 +52,15 @@ def _leave_to_the_body(operation: Any) -> None:
         return operation(links.body, *arguments)
 
 
-for name in ("weigh", "predict", "observe", "shift_velocity", "prepared", "stands_loose"):
-    _leave_to_the_body(getattr(interface, name))
+for shared in (
+    interface.weigh,
+    interface.predict,
+    interface.observe,
+    interface.shift_velocity,
+    interface.prepared,
+    interface.stands_loose,
+):
+    _leave_to_the_body(shared)
 
 
 def make_lines(

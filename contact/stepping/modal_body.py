@@ -204,7 +204,7 @@ def strain_points(body: ModalBody, position: FloatArray) -> None:
 def release(
     body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace, ground: Ground
 ) -> None:
-    """Base points at the end of the step without contact force, and their compliance."""
+    """Base points without contact force after the step, their compliance; their arms into `body.arm`, for `respond`."""
     m, n = body.stiffness.size, body.point.shape[0]
     slot = effective_slot(body, scheme, step)
     inverse = body.inverse[slot]

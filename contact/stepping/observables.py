@@ -109,12 +109,18 @@ def bearing_place(
     return place / total if total > 0.0 else nearest
 
 
+@compiled(inline=True)
+def pivot_length(control: Any) -> float:
+    """Length of the outer part of the base about which the body turns when the rest is open [m]."""
+    return (ROLLING_PIVOT if control.rolls else PIVOT) * control.width
+
+
 def record_start(track: Any, control: Any, camber: FloatArray, state: State) -> None:
     """Record the initial state: a container may start tilted, with an open side; `camber` of its points (n,) [m]."""
     n = control.base_points
     gap, x = state.point[:n, 1], state.point[:n, 0]
     closed = gap <= 0.0
-    pivot = (ROLLING_PIVOT if control.rolls else PIVOT) * control.width
+    pivot = pivot_length(control)
     left_open = int(not np.any(closed & (x < x[-1] - pivot)))
     right_open = int(not np.any(closed & (x > x[0] + pivot)))
     rotation, highest = float(abs(state.pose[ROTATION])), float((gap - camber[:n]).max())
@@ -159,7 +165,7 @@ def update_observables(run: Any, step: float) -> None:
     left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0
     lowest = math.inf
     first, last = new.point[0, 0], new.point[n - 1, 0]
-    pivot = (ROLLING_PIVOT if control.rolls else PIVOT) * control.width
+    pivot = pivot_length(control)
     for i in range(n):
         gap, x = new.point[i, 1], new.point[i, 0]
         rise = gap - camber[i]

@@ -10,12 +10,12 @@ from typing import Any
 from contact.arrays import FloatArray
 from contact.interface.laws import relaxed_stick, rolling_lead, stribeck_mu
 from contact.interface.solver import solve_contact
-from contact.interface.workspace import Contact
+from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, floor_motion, rare_motion
 from contact.stepping import body as interface
 from contact.stepping import ledger
-from contact.stepping.body import Ground
+from contact.stepping.body import Ground, State
 from contact.stepping.joints import in_a_row, points_of
 from contact.stepping.ledger import contact_losses, spring_energy, work_of_lift
 from contact.stepping.links import LinkedBody, push_of_links
@@ -38,6 +38,29 @@ def indent(contact: Contact, point: FloatArray, crushed: FloatArray) -> None:
     """Add camber and indentations (n,) to the heights of points (n, 2), which makes them gaps [m]."""
     for i in range(point.shape[0]):
         point[i, 1] += contact.camber[i] + crushed[i]
+
+
+@compiled(inline=True)
+def crush(contact: Contact, step: float, old: State, new: State, work: Workspace) -> None:
+    """Indent the floor under the points that reached their cap; `new.point` holds their heights.
+
+    As the slider of a stick, a plastic slider keeps spring and dashpot at the cap: they relax, and what the point has
+    moved besides indents the floor.
+    """
+    for i in range(new.point.shape[0]):
+        indented = old.crushed[i]
+        new.point[i, 1] += contact.camber[i]
+        if work.law[i, 1] >= work.cap[i]:
+            elastic = relaxed_stick(
+                max(0.0, -old.point[i, 1]),
+                work.cap[i],
+                contact.normal_stiffness[i],
+                contact.relaxation_time[i],
+                step,
+            )
+            indented = max(indented, -new.point[i, 1] - elastic)
+        new.crushed[i] = indented
+        new.point[i, 1] += indented
 
 
 @compiled(inline=True)
@@ -82,6 +105,20 @@ def middle_of(point: FloatArray, n: int) -> float:
     for i in range(n):
         middle += point[i, 0]
     return middle / n
+
+
+@compiled(inline=True)
+def push_rolling(run: RunState, share: float, slope: float) -> None:
+    """Move the points without contact force by the couple of rolling; `slope` is that of their velocities [1/s]."""
+    work, point, n = run.work, run.old.point, run.problem.control.base_points
+    middle = middle_of(point, n)
+    for i in range(work.free.shape[0]):
+        for a in range(2):
+            moved = 0.0
+            for j in range(n):
+                moved += work.compliance[2 * i + a, 2 * j + 1] * share * (point[j, 0] - middle)
+            work.free[i, a] += moved
+            work.free_velocity[i, a] += slope * moved
 
 
 @compiled(inline=True)
@@ -133,17 +170,8 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     for iteration in range(ITERATION_LIMIT):
         interface.release(body, scheme, step, old, new, work, ground)
         indent(contact, work.free, old.crushed)
-        if rolls:  # the couple of rolling moves the points
-            base = run.problem.control.base_points
-            middle = middle_of(old.point, base)
-            for i in range(work.free.shape[0]):
-                for a in range(2):
-                    moved = 0.0
-                    for j in range(base):
-                        arm = old.point[j, 0] - middle
-                        moved += work.compliance[2 * i + a, 2 * j + 1] * rolling * arm
-                    work.free[i, a] += moved
-                    work.free_velocity[i, a] += slope * moved
+        if rolls:
+            push_rolling(run, rolling, slope)
         solved = solve_contact(contact, step, slope, old.point, old.stick, work)
         if solved < 0:
             return -1
@@ -166,22 +194,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
             add_rolling(run, -rolling, work.force)
             copy_rows(new.force, work.force)
         if converged:
-            # As the slider of a stick, a plastic slider keeps spring and dashpot at the cap: they relax, and what the
-            # point has moved besides indents the floor.
-            for i in range(new.point.shape[0]):
-                indented = old.crushed[i]
-                new.point[i, 1] += contact.camber[i]
-                if work.law[i, 1] >= work.cap[i]:
-                    elastic = relaxed_stick(
-                        max(0.0, -old.point[i, 1]),
-                        work.cap[i],
-                        contact.normal_stiffness[i],
-                        contact.relaxation_time[i],
-                        step,
-                    )
-                    indented = max(indented, -new.point[i, 1] - elastic)
-                new.crushed[i] = indented
-                new.point[i, 1] += indented
+            crush(contact, step, old, new, work)
             return iteration + 1
     return -1
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import fem
-from contact.interface.equilibrium import pressed
+from contact.interface.equilibrium import ROUNDING_OF_CAMBER, pressed
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case, CaseError
 from fem.model.model import Model, build_model
@@ -85,7 +85,14 @@ def moments(model: Model, rotations) -> np.ndarray:
     for theta in rotations:
         sine, cosine = math.sin(theta), math.cos(theta)
         height = contact.camber[:n] - sine * x - cosine * z
-        normal, _ = pressed(weight, height, np.zeros((n, n)), contact.normal_stiffness[:n])
+        normal, _ = pressed(
+            weight,
+            height,
+            np.zeros((n, n)),
+            contact.normal_stiffness[:n],
+            rounding=ROUNDING_OF_CAMBER,
+            refusal="",
+        )
         found.append(float(normal @ (cosine * x - sine * z)) / (weight * EDGE))
     return np.array(found)
 

@@ -166,8 +166,8 @@ class TestMotionsOnASlope:
 
 
 RNG = np.random.default_rng(7)
-SAMPLED = np.sort(RNG.uniform(0.4, 9.0, 40))
-SAMPLES = RNG.normal(size=40)
+TABLE_TIMES = np.sort(RNG.uniform(0.4, 9.0, 40))
+TABLE_VALUES = RNG.normal(size=40)
 
 
 def integrated(motion: TableMotion, until: float) -> np.ndarray:
@@ -187,16 +187,16 @@ def integrated(motion: TableMotion, until: float) -> np.ndarray:
 
 @pytest.mark.parametrize("until", [3.21, 8.5])
 def test_displacement_and_velocity_are_exact_integrals_of_the_acceleration(until):
-    motion = TableMotion(times=SAMPLED, values=SAMPLES)
+    motion = TableMotion(times=TABLE_TIMES, values=TABLE_VALUES)
     x, v, a = motion.evaluate(np.array([until]))[:, 0]
     assert [x, v] == pytest.approx(integrated(motion, until), rel=1e-10, abs=1e-12)
-    assert a == pytest.approx(np.interp(until, SAMPLED, motion.accelerations), rel=1e-12)
+    assert a == pytest.approx(np.interp(until, TABLE_TIMES, motion.accelerations), rel=1e-12)
 
 
 @pytest.mark.parametrize(
     "times",
     [
-        SAMPLED,
+        TABLE_TIMES,
         np.arange(0.0, 40.0, 0.005),
         np.cumsum(RNG.uniform(0.004, 0.006, 900)),
         np.array([0.0, 1e-9, 5.0]),
@@ -213,16 +213,16 @@ def test_the_interval_of_any_time_is_found(times):
 
 
 def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
-    motion = TableMotion(times=SAMPLED, values=SAMPLES)
-    assert (motion.evaluate(np.array([0.0, SAMPLED[0] - 1e-12])) == 0.0).all()
-    end, later = motion.evaluate(np.array([SAMPLED[-1], SAMPLED[-1] + 3.0])).T
+    motion = TableMotion(times=TABLE_TIMES, values=TABLE_VALUES)
+    assert (motion.evaluate(np.array([0.0, TABLE_TIMES[0] - 1e-12])) == 0.0).all()
+    end, later = motion.evaluate(np.array([TABLE_TIMES[-1], TABLE_TIMES[-1] + 3.0])).T
     assert end[2] == later[2] == 0.0
     assert later[:2] == pytest.approx([end[0] + 3.0 * end[1], end[1]], rel=1e-14)
 
 
 @pytest.mark.parametrize("count", [2, 3, 40])
 def test_a_displacement_table_is_the_natural_spline(count):
-    times, values = SAMPLED[:count], SAMPLES[:count]
+    times, values = TABLE_TIMES[:count], TABLE_VALUES[:count]
     motion = TableMotion(times=times, values=values, quantity="displacement")
     spline = CubicSpline(times, values, bc_type="natural")
     within = np.linspace(times[0], times[-1], 201)

@@ -19,8 +19,6 @@ Motion = tuple[Callable[[np.ndarray], np.ndarray], Callable[[np.ndarray], np.nda
 SMOOTH: Motion = (lambda t: -np.cos(40.0 * t) / 40.0, lambda t: np.sin(40.0 * t))
 #: 1 Ns on 1 kg at 0.1003 s, within a step
 IMPULSE: Motion = (lambda t: np.maximum(0.0, t - 0.1003), lambda t: np.where(t >= 0.1003, 1.0, 0.0))
-#: vibration at 1 kHz of 1 m/s, above the rate of observation
-VIBRATION: Motion = (lambda t: -np.cos(6283.0 * t) / 6283.0, lambda t: np.sin(6283.0 * t))
 
 
 def uneven(step: float) -> np.ndarray:
