@@ -14,6 +14,7 @@ from fem.__main__ import COMMANDS, build_app
 
 Draw = Any
 SHAKEN = CASE.format(motion='kind = "harmonic"\namplitude_m = 0.05\nangular_frequency_rad_s = 7.0\n')
+SHAKEN = SHAKEN.replace("fields_s = 0.0\nfigures = false", "fields_s = 0.1")  # all that a run may write
 #: commands that would begin something long whatever they are told
 LONG = {"study", "verify", "ensemble", "sweep", "response"}
 #: commands that read a folder of results

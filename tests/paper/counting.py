@@ -149,19 +149,16 @@ def paper_criteria(experiments: Experiments) -> Evidence:
         "is a bound on the safe side only where it is never unconservative."
     )
     yield from _witnesses(stack, criteria.paper_rule)
+    rows = []
+    for outcome_map in every_map:
+        for name, rule in criteria.CRITERIA.items():
+            every, sure = outcome_map.count(rule), outcome_map.count(rule, sure=True)
+            counted = every.cells, every.right, every.conservative, every.unconservative
+            rows.append((outcome_map.title, name, *counted, sure.unconservative))
     yield table(
         "Criteria against runs, cell by cell",
         "map | criterion | cells | right | conservative | unconservative | .. of sure cells",
-        [
-            (
-                outcome_map.title,
-                *(name, every.cells, every.right, every.conservative, every.unconservative),
-                outcome_map.count(criterion, sure=True).unconservative,
-            )
-            for outcome_map in every_map
-            for name, criterion in criteria.CRITERIA.items()
-            for every in [outcome_map.count(criterion)]
-        ],
+        rows,
     )
     names, said = tuple(Outcome), {mode for mode, _ in modes}
     yield table(

@@ -231,10 +231,12 @@ def beyond_half_width(experiments: Experiments) -> Evidence:
     ]
     standing = [cell for cell in beyond if cell.stood]
     sure = [cell for cell in standing if cell.sure]
-    below = []  # the peak from which a sine overturns a slender block in its first swing
+    below = []
     for cell in sure:
+        # the peak over g a/c from which a sine overturns a slender block in its first swing
         limit = sustained_sine_threshold_slender(cell.motion.angular_frequency / FREQUENCY_PARAMETER)
-        below += [cell] if cell.motion.peak / UPLIFT < limit else []
+        if cell.motion.peak / UPLIFT < limit:
+            below.append(cell)
     yield at_most("sure cells with A > a/2 and M_T > M_R that stand", len(sure), 0.0)
     yield (
         f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
@@ -241,6 +242,7 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
         ) from None
 
 
+@cache
 def _decided_by() -> dict[str, Any]:
     """Program, libraries and checks: a claim that the same have decided is not checked again."""
     program = program_of_results()

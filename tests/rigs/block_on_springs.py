@@ -76,9 +76,13 @@ def largest_corner_force(
 ) -> float:
     """Largest mean force on a corner over a window that slides with the time [N].
 
-    The block stands on two corners, each a spring [N/m] with a dashpot, given over the spring [s], that never pulls,
-    and a like one along x that slides at `friction` times the force. It is released at rest, its corner as deep as it
-    carries the weight. Explicit steps of one size, no step control.
+    The block stands on two corners, each a spring with a dashpot that never pulls, and a like one along x that slides
+    at `friction` times the force. Explicit steps of one size, no step control.
+
+    Args:
+        mass: [kg]; stiffness: of the spring of one corner [N/m]; relaxation_time: dashpot over spring [s].
+        window, duration, step: [s].
+        rotation: from which the block is released at rest, its corner as deep as it carries the weight [rad].
     """
     below, half = block.centroid_height, block.half_width
     inertia = (block.inertia_ratio - 1.0) * block.radius**2 * mass

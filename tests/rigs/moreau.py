@@ -93,10 +93,18 @@ def move_boxes(
     size = np.stack(
         [boxes.half_width, boxes.height, boxes.centroid_height, boxes.mass, boxes.inertia], axis=1
     )
-    fell = _advance(
+    fell_at, fell_box = _advance(
         size, static, kinetic, gravity, np.asarray(along, float), step, every, q, v, places, slips, most
     )
-    return BoxMotion(step * every * np.arange(samples), places, slips, *most.T, *fell)
+    return BoxMotion(
+        times=step * every * np.arange(samples),
+        place=places,
+        slip=slips,
+        max_rotation=most[:, 0],
+        max_slip=most[:, 1],
+        fell_at=fell_at,
+        fell_box=fell_box,
+    )
 
 
 @numba.njit(cache=True)

@@ -43,10 +43,10 @@ class Experiment:
 
     name: str
     title: str
-    source: str = ""
-    licence: str = ""
-    tests: int = 0  #: how many are compared
-    fitted: str = ""  #: which inputs were fitted, on which tests, and to what
+    source: str
+    licence: str
+    tests: int  #: how many are compared
+    fitted: str  #: which inputs were fitted, on which tests, and to what
     findings: tuple[Finding, ...] = ()
     others: tuple[Predictor, ...] = ()
     figures: tuple[Picture, ...] = ()

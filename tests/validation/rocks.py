@@ -12,6 +12,7 @@ from dataclasses import replace
 from functools import cache, partial
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from evidence.findings import Finding, prediction
@@ -222,15 +223,13 @@ def _findings(name: str, votes: FloatArray, overturned: BoolArray, *, judged: bo
         band = (chances >= low) & ((chances < high) | (high == 1.0))
         what = f"overturned of {int(band.sum())} with a probability from {low:g} to {high:g}"
         counted = what, round(float(chances[band].sum()), 1), int(overturned[band].sum())
-        rows += [(counted, "", True, "")] if band.any() else []
-    return [
-        prediction(f"{name}: {what}", value, reference=reference, note=note)
-        if not (criterion and judged)
-        else prediction(
-            f"{name}: {what}", value, reference=reference, note=note, criterion=criterion, met=met
-        )
-        for (what, value, reference), criterion, met, note in rows
-    ]
+        if band.any():
+            rows.append((counted, "", True, ""))
+    findings = []
+    for (what, value, reference), criterion, met, note in rows:
+        stated: dict[str, Any] = {"criterion": criterion, "met": met} if criterion and judged else {}
+        findings.append(prediction(f"{name}: {what}", value, reference=reference, note=note, **stated))
+    return findings
 
 
 def _scores(

@@ -44,4 +44,13 @@ def run_validation(data: Path | None, *, reporter: ScreenReporter) -> list[Exper
 def not_computed(name: str, reason: str) -> Experiment:
     """An experiment that failed, which is a criterion missed."""
     failure = prediction("computed at all", "no", reference="-", criterion="computed", met=False, note=reason)
-    return Experiment(name=name, title=name, findings=(failure,), not_computed=reason)
+    return Experiment(
+        name=name,
+        title=name,
+        source="",
+        licence="",
+        tests=0,
+        fitted="",
+        findings=(failure,),
+        not_computed=reason,
+    )

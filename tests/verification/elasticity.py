@@ -59,10 +59,8 @@ def rigid_rotation() -> Findings:
         elements = distorted_block(order)
         rotated = elements.nodes @ turn(0.3).T - elements.nodes
         linear = 0.5 * float(rotated.ravel() @ (elements.stiffness @ rotated.ravel()))
-        case, ratio = (
-            f"rigid rotation by 0.3 rad, order {order}",
-            force_and_energy(elements, rotated)[1] / linear,
-        )
+        ratio = force_and_energy(elements, rotated)[1] / linear
+        case = f"rigid rotation by 0.3 rad, order {order}"
         compared = "strain energy over that of linear strain"
         yield analytic(case, compared, ratio, source="objectivity", absolute=1e-10)
 

@@ -19,7 +19,7 @@ from first_swing import first_swing_threshold
 from floors import half_sine_pulse, one_sine_pulse
 from verification.checks import Findings, check
 
-from contact.motion.kernel import PIECEWISE, as_floor_motion
+from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
 from fem.model.container import Container, discretise
@@ -169,18 +169,23 @@ def first_motion(
     case = runs.STACK.with_values(keys | {"solver.duration_s": 0.15, "output.history_s": 0.01})
     if lam not in containers:
         containers[lam] = discretise(case)
-    # at rest for 0.05 s, then an acceleration that grows for a while, or comes at once, and stays
-    growth, acceleration = 0.05 if ratio <= 1.0 / lam else 0.0, ratio * runs.GRAVITY
-    jerk = acceleration / growth if growth > 0.0 else 0.0
-    rows = [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0 if growth > 0.0 else acceleration, jerk]]
-    if growth > 0.0:
-        rows.append([jerk * growth**3 / 6.0, 0.5 * jerk * growth**2, acceleration, 0.0])
-    knots = np.array([0.05, 0.05 + growth][: len(rows) - 1])
-    motion = as_floor_motion(PIECEWISE, breaks=knots, coefficients=np.array(rows))
+    growth = 0.05 if ratio <= 1.0 / lam else 0.0
+    motion = growing_then_steady(ratio * runs.GRAVITY, growth)
     done = runs.finish(runs.with_motion(build_model(case, containers[lam]), motion, (0.05, 0.05 + growth)))
     slides = float(done.joint.max_slip) > 1e-4
     rocks = float(done.track.max_rocking) > 1e-3 * done.model.static.slenderness_angle
     return Outcome.of(slides=slides, rocks=rocks)
+
+
+def growing_then_steady(acceleration: float, growth: float) -> FloorMotion:
+    """At rest for 0.05 s, then an acceleration that grows for a while [s], or comes at once, and stays [m/s2]."""
+    jerk = acceleration / growth if growth > 0.0 else 0.0
+    knots = np.array([0.05, 0.05 + growth]) if growth > 0.0 else np.array([0.05])
+    coefficients = np.zeros((knots.size + 1, 4))
+    coefficients[1] = 0.0, 0.0, 0.0 if growth > 0.0 else acceleration, jerk
+    if growth > 0.0:
+        coefficients[2] = jerk * growth**3 / 6.0, 0.5 * jerk * growth**2, acceleration, 0.0
+    return as_floor_motion(PIECEWISE, breaks=knots, coefficients=coefficients)
 
 
 def threshold(keys: Callable[[float], runs.Keys], expected: float, values: runs.Keys) -> float:

@@ -153,12 +153,9 @@ def half_sine() -> Findings:
         exact = simulate_sliding(slider, half_sine_pulse(peak=2.65, duration=2.0), duration=3.0).largest_slip
         motion = runs.pulse(2.65, 2.0, "half-sine") | {"contact.mu_static": mu, "solver.duration_s": 3.0}
         for name, case, values in boxes:
-            slip, name = (
-                runs.run(case, motion | values).joint.max_slip,
-                f"{name}, half-sine of 2.65 m/s2 and 2 s",
-            )
-            compared = f"{name}, mu {mu}", "largest slip [m]"
-            yield computed(*compared, slip, exact, source=SLIDER, relative=STROKE_TOLERANCE)
+            slip = runs.run(case, motion | values).joint.max_slip
+            what, compared = f"{name}, half-sine of 2.65 m/s2 and 2 s, mu {mu}", "largest slip [m]"
+            yield computed(what, compared, slip, exact, source=SLIDER, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "steady strokes")
@@ -234,12 +231,10 @@ def falling_friction() -> Findings:
     """Steady stroke of the paper's box where friction falls from 0.4 to 0.2 like exp(-(v/v_s)^2)."""
     for stribeck, stroke in ((0.1, 37.222e-3), (0.3, 12.522e-3)):
         changed = {"contact.stribeck_velocity_m_s": stribeck, "solver.duration_s": 20.0}
-        case, source = (
-            f"rigid box, A = 0.05 m, Omega = 10 rad/s, v_s = {stribeck:g} m/s",
-            "rigid slider in steps of 10 us, explicit",
-        )
-        found = "steady slip, peak to peak [m]", stroke_of(runs.run(runs.BOX, PAPER_BOX | changed))
-        yield computed(case, *found, stroke, source=source, relative=STROKE_TOLERANCE)
+        found = stroke_of(runs.run(runs.BOX, PAPER_BOX | changed))
+        case = f"rigid box, A = 0.05 m, Omega = 10 rad/s, v_s = {stribeck:g} m/s"
+        compared, source = "steady slip, peak to peak [m]", "rigid slider in steps of 10 us, explicit"
+        yield computed(case, compared, found, stroke, source=source, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "the paper's box on a fast floor")
@@ -305,10 +300,8 @@ def pull_below_stiction() -> Findings:
     for name, keys in bodies.items():
         for share in (0.8, 0.98):
             values = runs.pulse(share * 0.4 * runs.GRAVITY, 0.5) | runs.FRICTION | {"solver.duration_s": 1.0}
-            case, slip = (
-                f"{name}, {share:g} of stiction for 0.5 s, mu 0.4/0.2",
-                runs.run(runs.BOX, values | keys).joint.max_slip,
-            )
+            slip = runs.run(runs.BOX, values | keys).joint.max_slip
+            case = f"{name}, {share:g} of stiction for 0.5 s, mu 0.4/0.2"
             compared, source = "largest slip over the width", "a rigid slider rests"
             yield analytic(case, compared, slip / 1.1, source=source, absolute=1e-4)
 

@@ -59,6 +59,8 @@ def test_the_kernel_for_one_box_does_the_same():
         general = move_boxes(ONE, shaken(4.0, 6.0), step=STEP, mu_static=mu_static, mu_kinetic=mu_kinetic)
         assert rotation == pytest.approx(general.max_rotation[0], abs=2e-5)
         assert slip == pytest.approx(general.max_slip[0], abs=2e-5)
+    general = move_boxes(ONE, shaken(4.0, 6.0), step=STEP, mu_static=0.4)
+    assert found[0, 0] == pytest.approx(general.max_rotation[0], rel=1e-6)
     assert found[:, 2].tolist() == [0.0, 0.0, 0.0, 1.0]
 
 

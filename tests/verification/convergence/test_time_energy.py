@@ -3,9 +3,13 @@
 Its order where nothing switches is a row of `verify`.
 """
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, Rig, rig
+from closed_forms import damped_drop_restitution
 from evidence.findings import Convergence
 from verification.time_stepping import oscillator_error
 
@@ -67,6 +71,18 @@ def test_steps_that_change_all_the_time_keep_the_second_order(scheme):
         errors[h] = oscillator_error(scheme, h, 1.0, np.cumsum(pattern) * h)
     orders = Convergence("step [s]", errors, order=2.0, within=0.1)
     assert orders.passed, orders
+
+
+@pytest.mark.parametrize("heave_ratio", [0.05, 0.1, 0.2, 0.5])
+def test_the_steps_of_the_control_resolve_a_damped_landing(heave_ratio):
+    # The whole mass on one corner has sqrt 2 less than the heave ratio: k is then half, c is half.
+    ratio, speed = heave_ratio / math.sqrt(2.0), 0.5
+    block = Block(height=1.0, mass=2500.0, gravity=0.0, bounce_frequency=20.0, damping_ratio=ratio)
+    falling = {"centre": (0.0, 0.501), "velocity": (0.0, -speed), "force": np.zeros((2, 2))}
+    state = rig(block, stance=replace(Block(height=1.0).standing(), **falling)).advance(0.1).run.old
+    assert (state.point[:, 1] > 0.0).all()  # it has left the floor
+    assert abs(state.position[2]) < 1e-12
+    assert state.velocity[1] / speed == pytest.approx(damped_drop_restitution(heave_ratio), abs=0.01)
 
 
 def test_slip_leaves_out_the_elastic_stick():
