@@ -8,7 +8,6 @@ this package and of the sources named for a kernel from elsewhere.
 import hashlib
 import os
 import shutil
-import stat
 import sys
 import tempfile
 from collections.abc import Callable
@@ -26,6 +25,7 @@ from numba.core.typing.typeof import typeof
 from numba.extending import register_jitable
 
 from contact.compiler import PLAIN, KernelCompiler, PieceCompiler
+from contact.folders import open_to_others
 
 #: machine code that a wheel may bring (`.ci/package`), compiled for any CPU of its kind, by Python and numba
 SHIPPED = Path(__file__).parent / "machine_code"
@@ -89,17 +89,11 @@ def _require_own(*folders: Path) -> None:
     Raises:
         CacheFolderError: one is neither the user's nor root's, or others may write it.
     """
-    for folder in folders if hasattr(os, "getuid") else ():
-        state = folder.stat()
-        ours = state.st_uid in (os.getuid(), 0)
-        # as /tmp: nobody replaces what is another's
-        sticky = state.st_mode & stat.S_ISVTX and folder is folders[-1]
-        shared = stat.S_IWOTH | (stat.S_IWGRP if state.st_gid != os.getgid() else 0)
-        if not ours or (state.st_mode & shared and not sticky):
-            raise CacheFolderError(
-                f"others may write {folder}, from which compiled kernels are loaded and run: name a folder of your "
-                "own as NUMBA_CACHE_DIR, or take the right to write from them"
-            )
+    if (folder := open_to_others(*folders)) is not None:
+        raise CacheFolderError(
+            f"others may write {folder}, from which compiled kernels are loaded and run: name a folder of your own as "
+            "NUMBA_CACHE_DIR, or take the right to write from them"
+        )
 
 
 #: of all kernels: they own no memory, so numba's runtime, which would count references at every call, is left out, and

@@ -319,7 +319,11 @@ def _placed_on_floor(points: FloatArray, width: float, height: float) -> FloatAr
 
 
 def require_tiling(points: FloatArray, quads: IntArray, width: float, height: float) -> None:
-    """Refuse counter-clockwise cells that do not tile a box on the floor, centred on x = 0."""
+    """Refuse counter-clockwise cells that do not tile a box on the floor, centred on x = 0.
+
+    Raises:
+        MeshError: an edge of more than two cells, an inner edge of only one, areas that do not add up.
+    """
     edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     pairs, counts = np.unique(edges, axis=0, return_counts=True)
     if counts.max() > 2:

@@ -73,7 +73,10 @@ def distribute_mass(
     """Areal density (m,) [kg/m2] and region (m,) of the cells of one box.
 
     A cell that could carry fill but lies beyond the level comes back as SHEET. Mass and centroid height of the cells
-    together are those of `fill`, to rounding; MeshError: walls heavier than the box, a centroid out of reach.
+    together are those of `fill`, to rounding.
+
+    Raises:
+        MeshError: walls heavier than the box; a centroid out of reach, with the range in reach.
     """
     if not fill.centroid_height < geometry.height:
         raise MeshError(

@@ -7,11 +7,10 @@ boxes that they cross. Boxes without bolts have meshes of their own, and share n
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
+from mesh.cells import FloatArray, IntArray
 from mesh.container import (
     MOST_CELLS,
     ContainerMesh,
@@ -48,6 +47,18 @@ class StackedBox:
         return self.axis - 0.5 * self.geometry.width, self.axis + 0.5 * self.geometry.width
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeshArrays:
+    """What the assembly needs of a mesh; it has no mass, base or quality."""
+
+    points: FloatArray  #: (n, 2) [m]
+    quads: IntArray  #: (m, 4), counter-clockwise
+    region: IntArray  #: (m,)
+    box: IntArray  #: (m,)
+    thickness: FloatArray  #: (m,) [m]
+    areal_density: FloatArray  #: (m,) [kg/m2]
+
+
 def build_loose_mesh(
     boxes: Sequence[StackedBox], *, element_size: float, foot: float | None = None
 ) -> ContainerMesh:
@@ -71,28 +82,34 @@ def build_loose_mesh(
 def placed_apart(boxes: Sequence[StackedBox], meshes: Sequence[ContainerMesh]) -> ContainerMesh:
     """Meshes of single boxes, each standing on z = 0 and centred on x = 0, moved to their places as one mesh."""
     arrays = _side_by_side(meshes, [(box.axis, box.bottom) for box in boxes])
-    return ContainerMesh(elevation=Elevation(arrays.pop("points"), arrays.pop("quads")), **arrays)
+    return ContainerMesh(
+        elevation=Elevation(arrays.points, arrays.quads),
+        region=arrays.region,
+        box=arrays.box,
+        thickness=arrays.thickness,
+        areal_density=arrays.areal_density,
+    )
 
 
-def mesh_of_row(meshes: Sequence[ContainerMesh], x: Sequence[float]) -> Any:
-    """The meshes of containers in a row as one, with their axes at x [m]: the part that the assembly needs."""
-    return SimpleNamespace(**_side_by_side(meshes, [(at, 0.0) for at in x]))
+def mesh_of_row(meshes: Sequence[ContainerMesh], x: Sequence[float]) -> MeshArrays:
+    """The meshes of containers in a row as one, with their axes at x [m]."""
+    return _side_by_side(meshes, [(at, 0.0) for at in x])
 
 
-def _side_by_side(meshes: Sequence[ContainerMesh], places: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Points, corners and what belongs to the cells of all meshes, in their order, moved to their places [m]."""
+def _side_by_side(meshes: Sequence[ContainerMesh], places: Sequence[tuple[float, float]]) -> MeshArrays:
+    """All meshes in their order, moved to their places [m]."""
     starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     boxes = np.cumsum([0, *(1 + mesh.box.max() for mesh in meshes)])
-    parts = [
-        {
-            "points": mesh.points + np.array(place),
-            "quads": mesh.quads + start,
-            "box": mesh.box + first,
-            **{name: getattr(mesh, name) for name in ("region", "thickness", "areal_density")},
-        }
-        for mesh, place, start, first in zip(meshes, places, starts[:-1], boxes[:-1], strict=True)
-    ]
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return MeshArrays(
+        points=np.concatenate(
+            [mesh.points + np.array(place) for mesh, place in zip(meshes, places, strict=True)]
+        ),
+        quads=np.concatenate([mesh.quads + start for mesh, start in zip(meshes, starts[:-1], strict=True)]),
+        region=np.concatenate([mesh.region for mesh in meshes]),
+        box=np.concatenate([mesh.box + first for mesh, first in zip(meshes, boxes[:-1], strict=True)]),
+        thickness=np.concatenate([mesh.thickness for mesh in meshes]),
+        areal_density=np.concatenate([mesh.areal_density for mesh in meshes]),
+    )
 
 
 def box_mesh(mesh: ContainerMesh, number: int) -> ContainerMesh:
@@ -120,9 +137,8 @@ def build_bolted_mesh(
             centroid that cannot be met.
     """
     near = SAME_LINE * min(box.geometry.width for box in boxes)
-    ends: list[
-        float
-    ] = []  # lines that all boxes must have; of those that fall together that of the lower box
+    # lines that all boxes must have; of those that fall together that of the lower box
+    ends: list[float] = []
     for number, box in enumerate(boxes):
         own = column_segments(box.geometry, element_size, None if number else foot)
         left, right = box.sides

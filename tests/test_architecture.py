@@ -14,7 +14,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 
 #: from the foundation up: a package imports its own modules and those of lower layers, none beside or above it
 LAYERS = (
-    ("mesh", "contact.arrays", "contact.pieces"),
+    ("mesh", "contact.arrays", "contact.folders", "contact.pieces"),
     ("contact.compiler",),
     ("contact.structs", "contact.local_arrays"),
     ("contact.jit", "contact.reference"),
@@ -99,6 +99,8 @@ LOADING_LATE = {
     "fem/results/history.py",
     "fem/run/compute.py",
     "fem/site/motions.py",
+    "fem/site/run.py",
+    "fem/site/size.py",
     "mesh/files.py",
 }
 

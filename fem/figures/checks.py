@@ -75,9 +75,8 @@ def band_figure(run: RunData) -> Figure | None:
         what = f"{member.kind}s" if member.kind in ("pair", "draw") else WORDS.get(key, key) or "as given"
         groups.setdefault(what, []).append(member)
     figure, (above, below) = style.panels((2.2, 1.5), header=3, below=LABELS)
-    alike: dict[
-        tuple[bool, str], list[tuple[float, ChangedRun]]
-    ] = {}  # drawn at once: one by one takes 0.1 s
+    # drawn at once: one by one takes 0.1 s
+    alike: dict[tuple[bool, str], list[tuple[float, ChangedRun]]] = {}
     for position, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):

@@ -86,29 +86,10 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
         )
     step = _interval(source, header, sample_interval, separator)
     table = read_table(source, first, count, separator, decimal_comma)
-    for number, text in top:  # a broken row, which would be taken for a title
-        fields = fields_in(text, separator)
-        begin = as_numbers(fields[:1]) if len(fields) == count > 1 else None
-        if begin is not None and not text.endswith("#") and begin[0] < table[0, 0]:
-            raise source.refused("not a number, or too large for one (no unit, no text)", number)
-    value, behind = float(table[0, 0]), len(table) - 1
-    if count == 1 and behind > 1 and value in (behind, behind - 1, step):
-        what = "the interval of the samples" if value == step else "the number of the values below it"
-        raise source.refused(
-            f"its first number is {what}; delete the line, or write number and interval in one line above the values"
-        )
+    _require_begin(source, top, table, separator, step)
     if step is None:
         times = table[:, 0] * TIMES[header.units[0] or "s"]
-        if (back := np.flatnonzero(np.diff(times) <= 0.0)).size:
-            row = int(back[0])
-            twice = times[row] == times[row + 1]
-            how = "occurs twice" if twice else "is earlier than that of the line before"
-            number, _ = next(islice(_contents(source.lines[first - 1 :], first), row + 1, None))
-            raise source.refused(
-                f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and "
-                "no time, name the columns, such as NS, EW, UD, and give sample_interval_s",
-                number,
-            )
+        _require_increasing(source, times, first)
         if len(times) > 1:
             require_interval(float(np.median(np.diff(times))), "the samples have")
     else:
@@ -329,6 +310,40 @@ def _interval(
         )
     require_interval(stated, "the header gives")
     return stated
+
+
+def _require_begin(
+    source: MotionText,
+    top: list[tuple[int, str]],
+    table: FloatArray,
+    separator: str | None,
+    step: float | None,
+) -> None:
+    """Refuse a broken row that would be taken for a title, and a count or interval that would be taken for a value."""
+    for number, text in top:
+        fields = fields_in(text, separator)
+        begin = as_numbers(fields[:1]) if len(fields) == table.shape[1] > 1 else None
+        if begin is not None and not text.endswith("#") and begin[0] < table[0, 0]:
+            raise source.refused("not a number, or too large for one (no unit, no text)", number)
+    value, behind = float(table[0, 0]), len(table) - 1
+    if table.shape[1] == 1 and behind > 1 and value in (behind, behind - 1, step):
+        what = "the interval of the samples" if value == step else "the number of the values below it"
+        raise source.refused(
+            f"its first number is {what}; delete the line, or write number and interval in one line above the values"
+        )
+
+
+def _require_increasing(source: MotionText, times: FloatArray, first: int) -> None:
+    back = np.flatnonzero(np.diff(times) <= 0.0)
+    if back.size:
+        row = int(back[0])
+        how = "occurs twice" if times[row] == times[row + 1] else "is earlier than that of the line before"
+        number, _ = next(islice(_contents(source.lines[first - 1 :], first), row + 1, None))
+        raise source.refused(
+            f"times must increase, but time {times[row + 1]:g} s {how}; where the first column is a component and no "
+            "time, name the columns, such as NS, EW, UD, and give sample_interval_s",
+            number,
+        )
 
 
 def _components(

@@ -7,7 +7,7 @@ PEER has four lines: database; event, date, station, component; "ACCELERATION TI
 
 import re
 
-from fem.records.record import PLURALS, Record
+from fem.records.record import PLURALS, Quantity, Record
 from fem.records.source import Format, MotionText, regular_component
 from fem.records.units import BRACKETS, units_in_words
 
@@ -22,14 +22,17 @@ QUANTITY = re.compile(
     re.IGNORECASE,
 )
 ALONE = re.compile(r"\s*(\d{1,7})[\s,;]+([\d.]\S*(?:\s+s(?:ec\w*)?)?)\s*", re.IGNORECASE | re.ASCII)
+QUANTITIES: dict[str, Quantity] = {name: name for name in PLURALS}
 
 
 def _recognises(source: MotionText) -> bool:
     """Whether one of the first lines gives number and interval of the samples, and not of rows of columns."""
     last, number, _ = _sampling(source)
+    if last == 0:
+        return False
     rows = [line for line in source.lines[last:] if line.strip()]
     in_columns = number.isdigit() and len(rows) == int(number) > 1
-    return last > 0 and (not in_columns or len(rows[0].split()) == 1)
+    return not in_columns or len(rows[0].split()) == 1
 
 
 def _read(source: MotionText, unit: str | None) -> Record:
@@ -39,8 +42,7 @@ def _read(source: MotionText, unit: str | None) -> Record:
     stated = None
     for line in source.lines[:last]:
         if match := QUANTITY.search(line):
-            quantity = next(known for known in PLURALS if known == match[1].lower())
-            stated = source.unit_in_header(match[2], quantity)
+            stated = source.unit_in_header(match[2], QUANTITIES[match[1].lower()])
             break
         if units := units_in_words(line):
             stated = units[0]
@@ -65,10 +67,11 @@ def _sampling(source: MotionText) -> tuple[int, str, str]:
         if count and step:
             return number, count[1], step[1]
         if alone := ALONE.fullmatch(line):
+            if QUANTITY.search(source.line(number - 1)):
+                return number, alone[1], alone[2]
             # as many numbers as it says follow, which are not in pairs, as the rows of a table are
             widths = [len(row.split()) for row in source.lines[number:]]
-            follow = sum(widths) == int(alone[1]) > 1 and max(widths) != 2
-            if follow or QUANTITY.search(source.line(number - 1)):
+            if sum(widths) == int(alone[1]) > 1 and max(widths) != 2:
                 return number, alone[1], alone[2]
     return 0, "", ""
 

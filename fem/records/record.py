@@ -115,7 +115,10 @@ class Record:
         """The component of a quantity that moves the floor in a direction.
 
         Directions stated in the file decide; a component without one serves either. A channel, by number from 1 or
-        by name, is taken whatever its direction. RecordError: there is none, or more than one to choose from.
+        by name, is taken whatever its direction.
+
+        Raises:
+            RecordError: there is none, or more than one to choose from; the message names the channels.
         """
         if channel:
             number, called = channel.lstrip("0"), channel.casefold()

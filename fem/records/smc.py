@@ -7,7 +7,7 @@ format by the National Strong-Motion Program (Converse, USGS).
 import math
 import re
 
-from fem.records.record import Record
+from fem.records.record import Direction, Record
 from fem.records.source import Format, MotionText, regular_component
 from fem.records.units import OTHERWISE, direction_of
 
@@ -48,18 +48,24 @@ def _read(source: MotionText, unit: str | None) -> Record:
     readings, behind = source.read_block(line, count, per_line=PER_LINE, width=WIDTH)
     source.require_end(behind, count)
     name = source.line(6).partition("component=")[2].strip() or source.line(6).partition("comp=")[2].strip()
-    direction = direction_of(name)
-    if direction[0] is None:  # by the angles of the sensor from the upward vertical and from north
-        tilt, azimuth, null = whole[12], whole[13], whole[0]
-        if tilt != null and tilt in (0.0, 180.0):
-            direction = "vertical", (1.0 if tilt == 0.0 else -1.0)
-        elif (azimuth != null) if tilt == null else (tilt == 90.0):
-            direction = "horizontal", 1.0
+    direction = _direction(name, whole[12], whole[13], whole[0])
     component = regular_component(readings, 1.0 / rate, settled, name=name, direction=direction)
     flagged = whole[17] == 1.0 and whole[0] != 1.0
     notes = ("its header flags a problem of the record, see the comments in the file",) if flagged else ()
     station = source.line(6).partition("component=")[0].partition("=")[2].strip()
     return Record(components=(component,), station=station, notes=notes)
+
+
+def _direction(name: str, tilt: float, azimuth: float, null: float) -> tuple[Direction | None, float]:
+    """By the component's name, else by the angles of the sensor from the upward vertical and from north [degrees]."""
+    by_name, sense = direction_of(name)
+    if by_name is not None:
+        return by_name, sense
+    if tilt == null:
+        return (None if azimuth == null else "horizontal"), 1.0
+    if tilt in (0.0, 180.0):
+        return "vertical", (1.0 if tilt == 0.0 else -1.0)
+    return ("horizontal" if tilt == 90.0 else None), 1.0
 
 
 SMC = Format("SMC", lambda source: TITLE.fullmatch(source.line(1)), _read)

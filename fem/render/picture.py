@@ -165,7 +165,7 @@ class Captions:
         """Vertical bar of von Mises stress from 0 to the limit [Pa], above the floor."""
         width, height = view.size
         shares = (0.0, 0.25, 0.5, 0.75, 1.0)
-        bar = self._plotter.add_scalar_bar(  # type: ignore[call-arg]
+        bar = self._plotter.add_scalar_bar(  # type: ignore[call-arg]  # as declared, it lacks its `self`
             title="",
             mapper=mapper,
             n_labels=0,

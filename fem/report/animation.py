@@ -309,8 +309,10 @@ def exaggeration(animation: Animation, height: float) -> float:
 def exaggerations(animation: Animation, height: float) -> list[float]:
     """Factors to choose from; none where the container is rigid."""
     fit = exaggeration(animation, height)
+    if fit == 0.0:
+        return []
     factors = [fit * factor for factor in (0.1, 0.3, 1.0, 3.0)]
-    return sorted({1.0, *(one_two_five(one, up=False) for one in factors if one > 1.0)} if fit else ())
+    return sorted({1.0, *(one_two_five(one, up=False) for one in factors if one > 1.0)})
 
 
 def colour_scale(name: str, count: int) -> list[str]:

@@ -47,6 +47,8 @@ SURENESS = {
 def explorer(sweep: Sweep, folder: Path, jobs: int | None = None) -> str:
     """The page of a finished sweep, from the folder of its results, as the text of an HTML file.
 
+    `jobs`: cores to use; default: all.
+
     Raises:
         FolderError: it is not finished, its containers are several bodies, or it has more cells than a page has room
             for.

@@ -305,7 +305,9 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
 
 
 def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool = False) -> str:
-    """The page of a list of containers, as the text of an HTML file; brief: the answer, the tags and the weakest.
+    """The page of a list of containers, as the text of an HTML file.
+
+    `brief`: only the answer, the tags and the weakest.
 
     Raises:
         FolderError: it is not the folder of a list, it is damaged, or it is not finished.
@@ -353,7 +355,10 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
 
 
 def folded(ranked: Sequence[A_ROW]) -> tuple[list[A_ROW], list[A_ROW]]:
-    """Rows of the list, the weakest first, those of equal containers as one; apart from them many that are at rest."""
+    """Rows of the list, those of equal containers as one; apart from them the containers at rest, where they are many.
+
+    `ranked`: the weakest first.
+    """
     alike: dict[tuple[str, str], list[A_ROW]] = {}
     for row in ranked:
         alike.setdefault((row["command"], row["tag"]), []).append(row)

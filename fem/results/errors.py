@@ -33,7 +33,9 @@ class FolderLostError(OSError):
 
 @contextmanager
 def writing_into(folder: Path, way_on: str) -> Iterator[None]:
-    """Turn errors of the file system into messages; `way_on` is what to do when the folder can be written again.
+    """Turn errors of the file system into messages.
+
+    `way_on`: what to do when the folder can be written again, such as "--resume continues the sweep".
 
     Raises:
         FolderError: a file stands where a folder should, or the folder cannot be made.
@@ -53,9 +55,12 @@ def writing_into(folder: Path, way_on: str) -> Iterator[None]:
 
 
 def require_writable(folder: Path, elsewhere: str = OTHER_FOLDER, size: int = 1) -> None:
-    """Refuse a folder that cannot hold so many bytes, before its results are computed; nothing is left in it.
+    """Refuse a folder that cannot be written, before its results are computed; nothing is left in it.
 
-    The nearest folder on the way to it that exists is tried. OutputError: a read-only place, or a full disk.
+    Tried is the nearest folder on the way to it that exists, with `size` [bytes]; `elsewhere` is the way out.
+
+    Raises:
+        OutputError: a read-only place, or a full disk.
     """
     place = next((part for part in (folder, *folder.absolute().parents) if part.exists()), folder)
     if place.is_dir():  # what else it may be is said where it is used

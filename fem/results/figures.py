@@ -7,11 +7,22 @@ put together in `fem.run.verdict`. SI units, named in the keys; rotation > 0 tow
 container to +x.
 """
 
-# ruff: noqa: RUF009  (`shown` makes a field, not a value)
+# ruff: noqa: RUF009 - the rule is against a value that all objects share; `shown` returns a `field`, which is none
 
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass, field, fields
 from enum import Flag, auto
-from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Generic,
+    ParamSpec,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
@@ -20,6 +31,10 @@ from fem.runtime.units import JOINT_MILLIMETRES as JOINT_MM
 from fem.runtime.units import MILLIMETRES as MM
 from fem.runtime.units import SHORT_MILLIMETRES as SHORT_MM
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+_P = ParamSpec("_P")
 ValueT = TypeVar("ValueT")  #: a float of a run; [low, high] over a band
 
 
@@ -69,9 +84,12 @@ class Shown:
         return self.unit.text(value, reach, bare=bare)
 
 
-def shown(*how: Any, **more: Any) -> Any:
-    """A field that a run may lack, and how people are shown it: what `Shown` takes."""
-    return field(default=None, metadata={"shown": Shown(*how, **more)})
+def _field_with(how: Callable[_P, Shown]) -> Callable[_P, Any]:
+    return lambda *args, **named: field(default=None, metadata={"shown": how(*args, **named)})
+
+
+#: a field that a run may lack, and how people are shown it: what `Shown` takes
+shown = _field_with(Shown)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -293,7 +311,7 @@ def _hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True) | of_derived
 
 
-def declared_in(kind: Any) -> dict[str, Shown]:
+def declared_in(kind: "type[DataclassInstance]") -> dict[str, Shown]:
     """How people are shown what a class holds, by key: by its field, else by its type."""
     own = {one.name: one.metadata.get("shown") for one in fields(kind)}
     said = {

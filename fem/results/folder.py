@@ -252,7 +252,10 @@ class ResultFolder:
     def require_room(self, size: float, what: str, way_out: str) -> None:
         """Refuse a result of a size [bytes] that the disk cannot hold, counting the files that it replaces.
 
-        `what` is to be computed; `way_out` is another one than another folder.
+        `what` is to be computed; `way_out`: other than another folder.
+
+        Raises:
+            FolderError: with the room needed and the room there is.
         """
         free = free_disk(self.path, self.kind.own)
         if free is not None and size > free:
@@ -262,12 +265,18 @@ class ResultFolder:
             )
 
     def require_same_program(self) -> None:
-        """As the function."""
+        """Refuse to continue with what another version of the program computed; FolderError as the function."""
         if self.earlier is not None:
             require_same_program(self.path, self.earlier)
 
     def refuse_unfinished(self, progress: str) -> None:
-        """Refuse to overwrite an unfinished result of some progress ("12 of 20 rows") without --resume or --force."""
+        """Refuse to overwrite an unfinished result that is worth continuing.
+
+        `progress`: how far it is ("12 of 20 rows").
+
+        Raises:
+            FolderError: neither --resume nor --force was given.
+        """
         if self.earlier is not None and not self.finished and not self.resume:
             raise FolderError(
                 f"{self.path} holds this {self.kind.name}, unfinished, with {progress}; --resume continues it, --force "

@@ -130,7 +130,11 @@ KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, SIZE, HALL, PAPER, VERIFICATION)
 
 
 def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
-    """The content of a marking file, `run.json` by default; FolderError where there is none, or it is damaged."""
+    """The content of a marking file, `run.json` by default.
+
+    Raises:
+        FolderError: there is none, or it is damaged.
+    """
     try:
         result = read_json(path)
     except OSError as error:

@@ -34,7 +34,10 @@ class RunFiles:
 def require_free_names(case: Case, kind: ResultKind, texts: Iterable[str] = ()) -> None:
     """Refuse a mesh or motion file whose copy in a folder of results would be taken for a result.
 
-    `texts` are names of further files in the folder; a CaseError has the key and the name.
+    `texts`: names of further files in the folder.
+
+    Raises:
+        CaseError: with the key and the name.
     """
     for key, file in case.files.items():
         require_free_name(place_of(key), file.copy, kind, texts)

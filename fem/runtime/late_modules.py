@@ -5,9 +5,10 @@ numba reads yaml, whose files nobody here writes.
 """
 
 import sys
-from importlib.machinery import PathFinder
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import LazyLoader
-from typing import Any
+from types import ModuleType
 
 LATE = {"numpy.f2py", "numpy.testing", "yaml"}
 
@@ -16,7 +17,9 @@ class LateFinder(PathFinder):
     """Finds these modules, with a loader that waits for their first use, and leaves all others to those behind it."""
 
     @classmethod
-    def find_spec(cls, fullname: str, path: Any = None, target: Any = None) -> Any:
+    def find_spec(
+        cls, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         spec = PathFinder.find_spec(fullname, path, target) if fullname in LATE else None
         if spec is not None and spec.loader is not None:
             spec.loader = LazyLoader(spec.loader)

@@ -16,6 +16,7 @@ from io import FileIO
 from pathlib import Path, PurePath
 from typing import BinaryIO
 
+from contact.folders import open_to_others
 from fem.runtime.user_files import read_own
 
 #: flags of what is opened for writing; no link at the end of a path is followed
@@ -78,13 +79,10 @@ def kept_folder(name: str) -> Path | None:
     """A folder beside that of the compiled kernels, for what can be made again; None where others may write into it."""
     named = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
     with suppress(OSError, RuntimeError):  # without a home
-        folder = (Path(named) if named else Path.home() / ".cache") / "unanchored" / name
+        root = Path(named) if named else Path.home() / ".cache"
+        folder = root / "unanchored" / name
         folder.mkdir(parents=True, exist_ok=True)
-        states = [place.stat() for place in (folder, folder.parent)]
-        if not hasattr(os, "getuid") or all(
-            state.st_uid == os.getuid() and not state.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
-            for state in states
-        ):
+        if open_to_others(folder, folder.parent, root) is None:
             return folder
     return None
 

@@ -23,6 +23,7 @@ from skfem.helpers import ddot, sym_grad, trace
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import elasticity
 from mesh.container import ContainerMesh
+from mesh.stack import MeshArrays
 
 _ELEMENTS = {1: ElementQuad1, 2: ElementQuad2}
 _QUADRATURE_DEGREE = 5  # in each direction: 3 x 3 Gauss points
@@ -164,7 +165,7 @@ class FiniteElements:
 
 
 def assemble(
-    mesh: ContainerMesh, *, youngs_modulus: float, poisson_ratio: float, order: int
+    mesh: ContainerMesh | MeshArrays, *, youngs_modulus: float, poisson_ratio: float, order: int
 ) -> FiniteElements:
     """The finite elements of a mesh, assembled on first use; ValueError: elastic constants out of range."""
     lame = elasticity.plane_stress_lame(youngs_modulus, poisson_ratio)

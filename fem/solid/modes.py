@@ -53,37 +53,11 @@ def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
     equals, by node).
     """
     rigid = rigid_modes(elements).reshape(3, -1)
-    mass, stiffness = elements.vector_mass, elements.stiffness
     # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
     # both the factor well conditioned and the wanted modes apart.
     shift = _first_square_estimate(elements, rigid)
-    if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
-        # the same inversion on a basis of the rigid modes' complement, orthonormal in K + shift M
-        upper = cholesky((stiffness + shift * mass).toarray())
-        basis = solve_triangular(upper, qr(upper @ rigid.T)[0][:, 3:])
-        compliance = basis.T @ (mass @ basis)
-        last = len(compliance) - 1
-        inverses, vectors = eigh(0.5 * (compliance + compliance.T), subset_by_index=(last + 1 - count, last))
-        squares, vectors = 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
-    else:
-        factor = factorised(stiffness + shift * mass)
-
-        def solve(momentum: FloatArray) -> FloatArray:
-            return _without_rigid_motion(factor.solve(momentum), rigid, mass)
-
-        # Without symmetry, so that no mode is missed.
-        start = np.random.default_rng(0).standard_normal(elements.unknowns)
-        squares, vectors = eigsh(
-            stiffness,
-            k=count,
-            M=mass,
-            sigma=-shift,
-            OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
-            v0=_without_rigid_motion(start, rigid, mass),
-            ncv=min(elements.unknowns, 2 * count + 20),
-        )
-        rising = np.argsort(squares, kind="stable")
-        squares, vectors = squares[rising], vectors[:, rising]
+    modes = _dense_modes if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count) else _lanczos_modes
+    squares, vectors = modes(elements, rigid, shift, count)
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
     return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * signs_of(shapes))
@@ -112,6 +86,44 @@ def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> 
     path = folder / "modes.vtu"
     write_atomically(path, file.frame(shapes))
     return path
+
+
+def _dense_modes(
+    elements: FiniteElements, rigid: FloatArray, shift: float, count: int
+) -> tuple[FloatArray, FloatArray]:
+    """By inversion of K + shift M, on a basis of the rigid modes' complement, orthonormal in it."""
+    mass = elements.vector_mass
+    upper = cholesky((elements.stiffness + shift * mass).toarray())
+    basis = solve_triangular(upper, qr(upper @ rigid.T)[0][:, 3:])
+    compliance = basis.T @ (mass @ basis)
+    last = len(compliance) - 1
+    inverses, vectors = eigh(0.5 * (compliance + compliance.T), subset_by_index=(last + 1 - count, last))
+    return 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
+
+
+def _lanczos_modes(
+    elements: FiniteElements, rigid: FloatArray, shift: float, count: int
+) -> tuple[FloatArray, FloatArray]:
+    """By the same inversion, with what rounding leaves of the rigid modes removed at each."""
+    mass, stiffness = elements.vector_mass, elements.stiffness
+    factor = factorised(stiffness + shift * mass)
+
+    def solve(momentum: FloatArray) -> FloatArray:
+        return _without_rigid_motion(factor.solve(momentum), rigid, mass)
+
+    # Without symmetry, so that no mode is missed.
+    start = np.random.default_rng(0).standard_normal(elements.unknowns)
+    squares, vectors = eigsh(
+        stiffness,
+        k=count,
+        M=mass,
+        sigma=-shift,
+        OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
+        v0=_without_rigid_motion(start, rigid, mass),
+        ncv=min(elements.unknowns, 2 * count + 20),
+    )
+    rising = np.argsort(squares, kind="stable")
+    return squares[rising], vectors[:, rising]
 
 
 def _first_square_estimate(elements: FiniteElements, rigid: FloatArray) -> float:

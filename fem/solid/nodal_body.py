@@ -93,11 +93,7 @@ class FullBody:
             (np.ones(len(stiffness.indices)), stiffness.indices, stiffness.indptr), shape=(n, n)
         )
         pattern, mass = block_pattern(links), csr_array(elements.mass)
-        # entries of the mass at the blocks of the stiffness, which links the same nodes
-        entries, row = elements.mass.tocoo(), np.repeat(np.arange(n), np.diff(links.indptr))
-        self._block_mass = np.zeros(links.nnz)
-        places = entries.row.astype(np.int64) * n + entries.col
-        self._block_mass[np.searchsorted(row * n + links.indices, places)] = entries.data
+        self._block_mass = _on_blocks(elements.mass, links)
         nodal_mass = elements.nodal_mass
         self.mass = float(nodal_mass.sum())
         self.centroid = nodal_mass @ elements.nodes / self.mass
@@ -226,6 +222,15 @@ class FullBody:
         """Restore the arrays that `memory` gave for a body of the same container."""
         for name in REMEMBERED:
             getattr(self.nodal, name)[:] = memory[name]
+
+
+def _on_blocks(mass: csr_array, links: csr_array) -> FloatArray:
+    """Entries of the mass (n, n) at the blocks of the stiffness, which links the same nodes."""
+    n = mass.shape[0]
+    entries, row = mass.tocoo(), np.repeat(np.arange(n), np.diff(links.indptr))
+    values, places = np.zeros(links.nnz), entries.row.astype(np.int64) * n + entries.col
+    values[np.searchsorted(row * n + links.indices, places)] = entries.data
+    return values
 
 
 class FullStack:

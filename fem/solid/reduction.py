@@ -18,9 +18,8 @@ from fem.solid.modes import elastic_modes, rigid_modes
 
 #: relative mass below which an attachment mode, less its projection on the others, is rounding noise
 INDEPENDENT = 1e-10
-PROBE = (
-    1e-6  #: largest elastic displacement that probes the stress of a shape, over the size of the container
-)
+#: largest elastic displacement that probes the stress of a shape, over the size of the container
+PROBE = 1e-6
 LOADS = 32  #: solved at a time: the solver is no faster per load with more
 PRODUCT = 50_000_000_000  #: multiplications in one product of dense rows: a few seconds
 

@@ -1,8 +1,6 @@
 """Meshes of the checks: images of the unit square, a block with a graded base, a bar."""
 
 from collections.abc import Callable
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
@@ -10,18 +8,19 @@ from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, grid_quads
 from mesh.elevation import Elevation
 from mesh.region import Region
+from mesh.stack import MeshArrays
 
 Mapping = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 
 
 def mapped_mesh(
     columns: int, rows: int, mapping: Mapping, *, thickness: float = 1.0, density: float = 1.0
-) -> Any:
-    """Quads on the image of the unit square under `mapping`(s, t), for the assembly alone; density in kg/m3."""
+) -> MeshArrays:
+    """Quads on the image of the unit square under `mapping`(s, t), sizes in m; density in kg/m3."""
     s, t = np.meshgrid(np.linspace(0.0, 1.0, columns + 1), np.linspace(0.0, 1.0, rows + 1))
     quads = grid_quads(columns, rows)
     full = np.ones(len(quads))
-    return SimpleNamespace(
+    return MeshArrays(
         points=np.stack(mapping(s.ravel(), t.ravel()), axis=1),
         quads=quads,
         region=np.zeros(len(quads), dtype=np.int64),

@@ -43,6 +43,23 @@ def test_only_the_scripts_of_the_page_may_run_and_nothing_may_be_loaded(page, mo
     assert f"<script>{script}</script>" in text
 
 
+@pytest.mark.parametrize(("mode", "used"), [(0o755, True), (0o775, True), (0o777, False)])
+@pytest.mark.parametrize("damage", [lambda code: b"garbage", lambda code: code[: len(code) // 2]])
+def test_templates_kept_by_an_earlier_process_change_no_page(page, tmp_path, monkeypatch, mode, used, damage):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    pages._environment.cache_clear()
+    text = html_of(page)
+    kept = {file: file.read_bytes() for file in tmp_path.glob("unanchored/templates-*/*")}
+    assert kept
+    for file, code in kept.items():
+        file.write_bytes(damage(code))
+        file.parent.chmod(mode)
+    pages._environment.cache_clear()
+    assert html_of(page) == text
+    assert [file.read_bytes() == code for file, code in kept.items()] == [used] * len(kept)
+    pages._environment.cache_clear()
+
+
 def test_drawings_of_one_page_share_no_ids():
     drawing = '<?xml version="1.0"?>\n<svg><g id="a"/><use href="#a" clip-path="url(#b)"/></svg>'
     element = svg_element(drawing, label='a "plot" < b', prefix="one")

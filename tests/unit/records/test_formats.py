@@ -155,6 +155,12 @@ def test_two_columns_of_the_usual_forms_are_read(tmp_path, text):
     assert found.values.tolist() == [1.5, -2.0, 3.0]
 
 
+@pytest.mark.parametrize(("unit", "factor"), [("g", 9.80665), ("gal", 0.01), ("cm/s2", 0.01)])
+def test_values_are_taken_in_the_unit_that_is_given(tmp_path, unit, factor):
+    found = first_of(read(tmp_path, "0,1.5\n0.5,-2\n", unit=unit))
+    assert found.values == pytest.approx([1.5 * factor, -2.0 * factor], rel=1e-12)
+
+
 def test_no_message_quotes_what_is_in_the_file(tmp_path):
     for text in ("secret\n0,1\nsecret,2\n", "root:secret:0\n", "1 secret\n", "secret,secret\n1,2,secret\n"):
         with pytest.raises(ValueError, match=r"motion\.txt") as found:
