@@ -206,9 +206,13 @@ def test_the_models_of_one_stack_do_what_the_table_says():
     rows = {row.split(" | ")[0].strip("| "): row.strip("|").split("|") for row in lines}
     for name, case in zip(names, cases, strict=True):
         keys = {"output.fields_s": 0.0} | ({"solver.model": "rigid"} if name.startswith("rigid") else {})
-        verdict = fem.compute(load_case(case).replace(keys), band=False, margin=False).verdict
-        _, outcome, ratio, slip, _, air = (cell.strip() for cell in rows[name])
+        verdict = fem.compute(load_case(case).replace(keys), band=False, margin=True).verdict
+        _, outcome, ratio, slip, first, air = (cell.strip() for cell in rows[name])
         assert outcome == verdict.outcome
+        if (factor := verdict.margin.factor) is None:
+            assert first == f"not up to {verdict.margin.largest_tried:g} times"
+        else:
+            assert float(first.removesuffix(" times")) == pytest.approx(factor, abs=0.006)
         assert float(ratio) == pytest.approx(verdict.rotation_ratio, abs=6e-4)
         assert float(slip.removesuffix(" mm")) == pytest.approx(1e3 * verdict.max_slip_m, abs=0.6)
         assert float(air.removesuffix(" %")) == pytest.approx(100.0 * verdict.flight_share, abs=0.6)

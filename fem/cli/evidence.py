@@ -106,7 +106,7 @@ def validate(
 def _written(
     name: str, out: Path | None, compute: Callable[[], Computed], *, as_json: bool, manual: bool = False
 ) -> int:
-    """Write NAME.json and NAME.html, or the manual, too, and print the document or its table; the exit code."""
+    """Write NAME.json, NAME.html and, if asked, manual.html; print the document or its table. Returns the exit code."""
     folder = out if out is not None else OUTPUTS / name
     pages = from_clone("evidence.pages")
     require_writable(folder, ELSEWHERE_OUT, BYTES_BESIDE)

@@ -14,6 +14,7 @@ from fem.case.validation import CaseError
 from fem.cli.console import ELSEWHERE_TO, Quiet
 from fem.records.files import read_record
 from fem.records.processing import Baseline, Processing, baseline_change, processed
+from fem.records.record import Component
 from fem.render.opengl import require_rendering
 from fem.results.disk import BYTES_BESIDE
 from fem.results.errors import require_writable, writing_into
@@ -69,20 +70,7 @@ def picture(
             for component, motion in zip(components, made, strict=True)
             for note in (*component.notes, *doubts(path.name, component, motion, scale=1.0, confirmed=False))
         ]
-        # drawn beside its file, or where it is asked for
-        target = to if to is not None else Path(f"{path.stem}.png")
-        if target.suffix.lower() not in SUFFIXES:
-            raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
-        # Loads matplotlib.
-        figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("motions", "style"))
-        figure, drawn = figures.record_figure(made, path.name), io.BytesIO()
-        with writing_into(target.parent, ELSEWHERE_TO):
-            if target.suffix.lower() == ".svg":
-                write_atomically(target, style.svg_of(figure))
-            else:
-                figure.savefig(drawn, dpi=160)
-                write_atomically(target, drawn.getvalue())
-        say(target)
+        say(_write_motion(made, path, to))
         say("\n".join(noted), end="\n" * bool(noted))
         for component in components:
             change = baseline_change(component, processing)
@@ -99,6 +87,23 @@ def picture(
     pictures = importlib.import_module("fem.render.picture")
     with writing_into(to.parent if to else Path(run), ELSEWHERE_TO):
         say(pictures.write_picture(opened, time=time, path=to))
+
+
+def _write_motion(components: list[Component], path: Path, to: Path | None) -> Path:
+    """Draw a record, in the present folder, or where it is asked for."""
+    target = to if to is not None else Path(f"{path.stem}.png")
+    if target.suffix.lower() not in SUFFIXES:
+        raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
+    # Loads matplotlib.
+    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("motions", "style"))
+    figure, drawn = figures.record_figure(components, path.name), io.BytesIO()
+    with writing_into(target.parent, ELSEWHERE_TO):
+        if target.suffix.lower() == ".svg":
+            write_atomically(target, style.svg_of(figure))
+        else:
+            figure.savefig(drawn, dpi=160)
+            write_atomically(target, drawn.getvalue())
+    return target
 
 
 def movie(

@@ -4,7 +4,7 @@ import importlib
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
@@ -16,6 +16,13 @@ from fem.results.kinds import ENSEMBLE, HALL, RESPONSE, SITE, SIZE, SWEEP, Resul
 from fem.runtime.own_files import write_atomically
 from fem.runtime.progress import ScreenReporter
 from fem.runtime.terminal import say
+
+if TYPE_CHECKING:
+    from fem.response.lasting import ResponseResult
+    from fem.site.result import SiteResult
+    from fem.study.fragility import EnsembleResult
+    from fem.study.hall import HallResult
+    from fem.study.sweep_table import SweepResult
 
 SiteFile = Annotated[str, console.option("A site file or the name of a shipped one: site, cologne.", "SITE")]
 Motions = Annotated[tuple[str, ...], Parameter(name="--motion")]
@@ -91,7 +98,7 @@ def explore(sweep: str = "explorer", /, *, flags: console.StudyFlags = console.S
 def _swept(sweep: str, flags: console.StudyFlags, page: str = "") -> int:
     plan = _of("study.file:load_sweep")(sweep)
 
-    def shown(result: Any, folder: Path) -> dict[str, Any]:
+    def shown(result: "SweepResult", folder: Path) -> dict[str, Any]:
         answer = target = None
         if result.answer:
             answer = _of("study.answers:sweep_answer")(_of("study.sweep_table:open_sweep")(folder), folder)
@@ -111,7 +118,7 @@ def ensemble(ensemble: str, /, *, flags: console.StudyFlags = console.STUDY) -> 
     """
     plan = _of("study.file:load_ensemble")(ensemble)
 
-    def shown(result: Any, folder: Path) -> dict[str, Any]:
+    def shown(result: "EnsembleResult", folder: Path) -> dict[str, Any]:
         answer = _of("study.answers:ensemble_answer")(result)
         return {
             "answers": list(answer.lines()) if answer else [],
@@ -151,7 +158,7 @@ def batch(
     listed = _of("study.hall:read_hall")(hall)
     base = load_case(case, overrides, allow_outside=allow_outside)
 
-    def shown(result: Any, folder: Path) -> dict[str, Any]:
+    def shown(result: "HallResult", folder: Path) -> dict[str, Any]:
         report = _of("report.study_page:hall_report")
         if result.state == "finished" and not (folder / console.PAGE).is_file():
             write_atomically(folder / console.PAGE, report(folder))
@@ -201,7 +208,7 @@ def response(
     more = {"count": count, "hold": hold, "starts": starts, "settle": settle, "observe": observe}
     request = _of("response.request:request_of")(loaded, first, last, shell=shell, **more)
 
-    def shown(result: Any, folder: Path) -> dict[str, Any]:
+    def shown(result: "ResponseResult", folder: Path) -> dict[str, Any]:
         return {"asked": request, "stable": _of("response.lasting:stable_in_words")(result)}
 
     flags = console.StudyFlags(out=out, resume=resume, force=force, as_json=as_json, quiet=quiet)
@@ -233,7 +240,7 @@ def assess(
     """
     request = _of("site.request:load_site")(site, motion, allow_baseline=allow_baseline)
 
-    def shown(result: Any, folder: Path) -> dict[str, Any]:
+    def shown(result: "SiteResult", folder: Path) -> dict[str, Any]:
         if pdf and result.status == "completed":
             printed = _print_short(folder, _of("site.page:site_report"))
             ScreenReporter(quiet=flags.quiet).message(printed)

@@ -1,1 +1,1 @@
-"""One run: stepping to the end, recording, checkpoints, band over what is not known, files. It knows no set of runs."""
+"""One run: stepping to the end, recording, checkpoints, band over unknown inputs, files. It knows no set of runs."""

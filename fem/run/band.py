@@ -45,7 +45,7 @@ COST = 1.2  #: of a changed run over the run: stiffer floors and tighter toleran
 STEP_COST = (0.4e-6, 7e-9, 5e-9)
 DRAWN_TOLERANCE = 10.0  #: energy tolerance of draws at least, as of maps: 0.01 to 10 give the same outcomes
 STORED_S = 1.0  #: wall time between two notes of finished runs
-#: share of a static limit from which a container at rest may be brought to move by what is not known
+#: share of a static limit from which a container at rest may be brought to move by an unknown input
 NEAR_LIMIT = 0.7
 MOST_LIFTING = 0.3  #: vertical acceleration over g up to which that holds
 #: shares of the uplift acceleration between which a soft bed may rock a container that a rigid floor would not
@@ -307,11 +307,12 @@ def rests_far_below_limits(case: Case, result: RunResult) -> bool:
 def plan_of(model: Model, result: RunResult) -> tuple[list[InputChange], list[InputChange]]:
     """The members of a band, those that decide most often first; and those for which there is no time."""
     case, penalty = model.case, model.penalty
-    use, (low, high) = (result.static or StaticResult()).ruling.utilisation_overturning or 0.0, BELOW_UPLIFT
-    bears = case.support.kind != "corners"
-    soft = bears and low <= use <= high
+    use = (result.static or StaticResult()).ruling.utilisation_overturning or 0.0
+    low, high = BELOW_UPLIFT
+    soft = case.support.kind != "corners" and low <= use <= high
+    floors = [stiff_floor(case, penalty)] if soft else []
     singles, pairs, draws = all_changes(case, penalty)
-    ordered = [stiff_floor(case, penalty)] * soft + [*largest_first(singles), *pairs, *draws]
+    ordered = [*floors, *largest_first(singles), *pairs, *draws]
     cost = cost_of(result.numerics or Numerics())
     most = LEAST_MEMBERS if case.solver.model == "full" else max(LEAST_MEMBERS, int(BUDGET_S / cost))
     return ordered[:most], ordered[most:]

@@ -1,7 +1,7 @@
 """The computation of a run: a resolved case, stepping until done, the checks, the result in numbers and words.
 
 `fem.compute(case)` keeps it in memory and gives what `python -m fem run` writes; `fem.run.run` keeps it in a folder.
-The checks are the rigid block, the band over what is not known and the margin; all can be added to a run that was
+The checks are the rigid block, the band over unknown inputs and the margin; all can be added to a run that was
 finished without them.
 """
 

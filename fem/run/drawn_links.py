@@ -47,14 +47,16 @@ def drawn_links(case: Case, broken_s: Sequence[float] = ()) -> tuple[DrawnLink, 
     for link, until in zip(case.links, broken_s or [math.inf] * len(case.links), strict=True):
         side = axes[holder_of(case, link)] + side_of(case, link)
         outward = -1.0 if link.side == "left" else 1.0
-        x, outer, height, anchor = side, side, link.height_m, None if isinstance(link, StopTable) else 0.0
+        anchor: float | None = None
         if isinstance(link, StopTable):
             if link.gap_m > REACH * tallest:
                 continue
             x, thick = side + outward * link.gap_m, outward * WALL * tallest
-            outer, height = x + thick, max(height, abs(thick))
-        elif link.to == "wall":
-            outer, anchor = side + outward * TO_WALL * tallest, height
+            outer, height = x + thick, max(link.height_m, abs(thick))
+        else:
+            x, outer, height, anchor = side, side, link.height_m, 0.0
+            if link.to == "wall":
+                outer, anchor = side + outward * TO_WALL * tallest, height
         drawn.append(DrawnLink(x=x, outer=outer, height=height, anchor=anchor, outward=outward, until=until))
     return tuple(drawn)
 

@@ -33,7 +33,7 @@ from fem.run.sureness import ending, numerical
 from fem.run.verdict import outcome_of
 
 LARGEST, LEAST = 4.0, 0.05  #: factors
-#: share of the uplift acceleration below which nothing rocks, however soft and whatever is not known
+#: share of the uplift acceleration below which nothing rocks, however soft, and whatever the unknown inputs are
 SURELY_AT_REST = 0.6
 SCANNED, STEP = 15, 1.15  #: most factors of a first scan, and their least ratio
 #: width of a located end over the end, and of the finest steps below it; of drawn inputs
@@ -160,8 +160,9 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     reached = [fall for fall in first_falls if fall is not None]
     if in_band == Ending.OVERTURNED:
         reached.append(1.0)
+    # where it stands again beyond the first factor that overturns: least and largest factor of each
     beyond = [other for other in said if factor is not None and other > factor]
-    by_ending = groupby(beyond, key=lambda factor: own.known[factor].ending)
+    by_ending = groupby(beyond, key=lambda other: own.known[other].ending)
     islands = [list(group) for end, group in by_ending if end == Ending.STANDING]
     return Margin(
         factor=factor,

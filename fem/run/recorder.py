@@ -11,7 +11,7 @@ import numpy as np
 from contact.motion.kernel import floor_history, floor_motion
 from contact.stepping.body import ROTATION, State
 from contact.stepping.boxes import POINTS_OF_GAP
-from contact.stepping.state import ROW_ROTATION, RunState, row_names
+from contact.stepping.state import ROW_ROTATION, RunState, Samples, row_names
 from fem.case.columns import BOXES, JOINTS, NEIGHBOURS, STOPS, TIES, VERTICAL, history_columns
 from fem.case.tables.neighbours import places_of
 from fem.model.joints import Joints, joints_of
@@ -138,31 +138,15 @@ class Recorder:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
         columns = dict(zip(row_names(case.bodies), samples.columns[:count].T, strict=True))
-        force, row = samples.force[:count], self._model.container.row
-        # of neighbours the stepper has those of further boxes, in frames of their own
-        x = places_of(case, [neighbour.mesh.width for neighbour in row]).x if row else ()
-        for number in NEIGHBOURS.numbers(case):
-            begin = 2 * len(x) + POINTS_OF_GAP * (number - 1)
-            values = [columns[name] for name in BOXES.names((number + 1,))]
-            values[3] = values[3] + x[number]
-            side = force[:, begin : begin + POINTS_OF_GAP, 1].sum(axis=1)
-            columns |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
+        columns |= self._columns_of_row(columns, samples.force[:count])
         columns["time_s"] = as_written(times)
         columns |= zip(BASE, floor_history(run.problem.motion, times), strict=True)
         columns |= zip(VERTICAL.names((0,)), floor_history(run.problem.vertical, times), strict=True)
-        if self.joints is not None:
-            # means since the sample before; the first of a run has its own acceleration
-            rotation = samples.columns[:count, ROW_ROTATION]
-            motion = self.joints.motion(samples.position[:count], samples.velocity[:count], rotation)
-            forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
-            if first == 0:
-                forces[0] = self._joint_forces
-            self.joint_motion = motion[-1]
-            joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
-            columns |= zip(joints, forces.reshape(count, -1).T, strict=True)
+        joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
+        columns |= zip(joints, self._forces_in_joints(samples, first, count).T, strict=True)
         if case.links:
             links = (*STOPS.names(STOPS.numbers(case)), *TIES.names(TIES.numbers(case)))
-            columns |= zip(links, force[:, -len(links) :, 1].T, strict=True)
+            columns |= zip(links, samples.force[:count, -len(links) :, 1].T, strict=True)
         rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
         modes = [MODES[int(mode)] for mode in samples.mode[:count]]
@@ -171,6 +155,31 @@ class Recorder:
         if self._history_sink is not None:
             self._history_sink(rows, modes)
         clock.samples_drained = clock.samples
+
+    def _columns_of_row(self, columns: Mapping[str, FloatArray], force: FloatArray) -> dict[str, FloatArray]:
+        """The columns of neighbours, of which the stepper has those of further boxes in frames of their own."""
+        row, case = self._model.container.row, self._model.case
+        x = places_of(case, [neighbour.mesh.width for neighbour in row]).x if row else ()
+        found: dict[str, FloatArray] = {}
+        for number in NEIGHBOURS.numbers(case):
+            begin = 2 * len(x) + POINTS_OF_GAP * (number - 1)
+            values = [columns[name] for name in BOXES.names((number + 1,))]
+            values[3] = values[3] + x[number]
+            side = force[:, begin : begin + POINTS_OF_GAP, 1].sum(axis=1)
+            found |= zip(NEIGHBOURS.names((number,)), [*values, side], strict=True)
+        return found
+
+    def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
+        """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""
+        if self.joints is None:
+            return np.zeros((count, 0))
+        rotation = samples.columns[:count, ROW_ROTATION]
+        motion = self.joints.motion(samples.position[:count], samples.velocity[:count], rotation)
+        forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
+        if first == 0:
+            forces[0] = self._joint_forces
+        self.joint_motion = motion[-1]
+        return forces.reshape(count, -1)
 
     def _note_stress(self, frame: NodalFields) -> None:
         """Note the largest stress of a frame of a full model."""

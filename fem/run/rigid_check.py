@@ -64,11 +64,7 @@ class RigidCheck:
 
 
 def check_against_rigid_block(model: Model, history: History, verdict: Verdict) -> RigidCheck:
-    """Compare a finished run with the rigid block under its floor.
-
-    A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
-    block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
-    gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
+    """Compare a finished run with the rigid block.
 
     Args:
         model, history, verdict: of the run; the model may be stepped or not.
@@ -80,11 +76,7 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     if len(history.modes) < 2:
         raise ValueError(f"rigid check: the history needs two samples and has {len(history.modes)}")
     time, angle = history["time_s"], model.static.slenderness_angle
-    end = float(time[-1])
-    block, floor = _with_friction(model, end)
-    outside = block.outcome is PlanarMode.OUTSIDE
-    slides = block.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK} or (model.case.has_normal and outside)
-    motion: RockingMotion | PlanarMotion = block if slides else _without_sliding(model, floor, end)
+    motion, slides, left_model_at = _reference(model, float(time[-1]))
 
     def had_tilted(impact: PlanarImpact) -> bool:
         before = motion.at(np.linspace(0.0, impact.time, 512))[0]
@@ -98,7 +90,6 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
         strict=False,
     )
     same_side = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, peaks)
-    left_model_at = block.end if slides and outside else None
     reasons = _reasons_against(model, history, verdict, impact, left_model_at)
     impacts = RunAndBlock(run=verdict.first_impact_s, block=impact.time if impact else None)
     ratio = impact.velocity_after / impact.velocity_before if impact else None
@@ -174,6 +165,20 @@ def block_of(model: Model) -> RigidBlock:
     )
 
 
+def _reference(model: Model, end: float) -> tuple[RockingMotion | PlanarMotion, bool, float | None]:
+    """The rigid block under the run's floor up to `end` [s]; whether it slides; when it left its model [s].
+
+    A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
+    block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
+    gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
+    """
+    block, floor = _with_friction(model, end)
+    outside = block.outcome is PlanarMode.OUTSIDE
+    if block.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK} or (model.case.has_normal and outside):
+        return block, True, block.end if outside else None
+    return _without_sliding(model, floor, end), False, None
+
+
 def _with_friction(model: Model, end: float) -> tuple[PlanarMotion, FloorAcceleration]:
     """The block that may slide, and the acceleration of its floor, with its slope and vertical motion."""
     case = model.case
@@ -181,9 +186,9 @@ def _with_friction(model: Model, end: float) -> tuple[PlanarMotion, FloorAcceler
     if case.has_normal:
         floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
     jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
-    friction = {"mu_static": case.contact.mu_static, "mu_kinetic": case.contact.mu_kinetic}
+    contact = case.contact
     motion = simulate_planar_block(
-        PlanarBlock(body=block_of(model), **friction),
+        PlanarBlock(body=block_of(model), mu_static=contact.mu_static, mu_kinetic=contact.mu_kinetic),
         floor,
         duration=end,
         rotation=case.initial.rotation_rad,

@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from fem.case.case import Case, case_hash, to_toml
 from fem.model.container import discretise
@@ -154,13 +153,14 @@ def _compute_into(
     start = read_start(files, model, request) if place.resuming else Start()
     watch.before = start.spent
     place.begin(result.to_json(), texts, keep=bool(start.arrays))
-    options: dict[str, Any] = {"reporter": reporter, "stop": stop, "progress": start.progress}
     try:
         copy_data_files(model.case, place.path)
         with open_output(place, model, request, watch, start) as (recorder, save):
             if start.arrays:
                 reporter.message(f"resuming at t = {float(model.run.clock[0].time):.6g} s")
-            return stepped(model, result, recorder, save=save, **options)[0]
+            return stepped(
+                model, result, recorder, reporter=reporter, stop=stop, save=save, progress=start.progress
+            )[0]
     except OSError as error:  # `run.json` says that it failed where its files cannot be written
         if not isinstance(error, FolderLostError):
             reason = unwritable(place.path, error, WAY_ON)

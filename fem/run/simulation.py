@@ -123,12 +123,7 @@ def simulate(
     reporter.start(duration, float(clock.time))
     pace = Pace()
     while True:
-        # the present part of the run, and when it ends at the latest
-        part, until = UNDECIDED, duration + AFTERMATH / control.slowest_rocking
-        if clock.time < min(duration, model.rest_from):
-            part, until = DRIVEN, min(duration, model.rest_from)
-        elif clock.time < duration:
-            part, until = FREE, duration
+        part, until = _part_of(model)
         if progress.slice is None and (clock.time >= until or is_over.py_func(model.run, part)):
             break
         stopped = stop()
@@ -186,6 +181,16 @@ def simulate(
 def _attempts(run: RunState) -> int:
     """Attempted steps so far, accepted and rejected."""
     return int(run.clock[0].steps + run.clock[0].rejected)
+
+
+def _part_of(model: Model) -> tuple[int, float]:
+    """The present part of the run, and when it ends at the latest [s]."""
+    time, duration = float(model.run.clock[0].time), model.duration
+    if time < min(duration, model.rest_from):
+        return DRIVEN, min(duration, model.rest_from)
+    if time < duration:
+        return FREE, duration
+    return UNDECIDED, duration + AFTERMATH / model.run.problem.control.slowest_rocking
 
 
 def _crushed(model: Model) -> str | None:

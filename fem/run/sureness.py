@@ -1,4 +1,4 @@
-"""How sure a verdict is: what the members of its band show, and which inputs decide.
+"""How sure a verdict is: what its band shows, and which inputs decide; and where along an axis the outcome changes.
 
 A member behaves as the run does if its outcome is the same and neither rotation nor slip differs by an order of
 magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm. Of a loose

@@ -118,7 +118,8 @@ def verdict_from(
     track, joint = _numbers(run.track), _numbers(run.joints)
     fell = math.isfinite(track.overturned_at)
     outcome = Outcome.OVERTURNED if fell else Outcome.of(**moves)
-    seen = {mode for mode in Outcome if (track.modes | moves["hops"] << Outcome.HOP.code) & 1 << mode.code}
+    modes = track.modes | moves["hops"] << Outcome.HOP.code
+    seen = {mode for mode in Outcome if modes & 1 << mode.code}
     if not moves["slides"]:  # sliding that is too small to count in the outcome does not count here
         still = {Outcome.SLIDE: Outcome.REST, Outcome.SLIDE_ROCK: Outcome.ROCK}
         seen = {still.get(mode, mode) for mode in seen}
