@@ -76,6 +76,7 @@ CASES = ("free_rocking", "overturning", "rocking", *SEED, "sliding")
 ITEMS = (
     *(run(f"run {case}", case) for case in CASES),
     *(Item(f"check {case}", (("check", case), ("check", case, "--json"))) for case in CASES),
+    Item("check site", (("check", "site"), ("check", "site", "--json"))),
     run("run rigid", "rocking", "solver.model=rigid", options=["--check-rigid"]),
     run("run rigid floor", "rocking", "floor.kind=rigid", options=["--no-band"]),
     run("run full", "free_rocking", "solver.model=full", "solver.duration_s=1", options=["--no-band"]),

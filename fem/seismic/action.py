@@ -291,7 +291,7 @@ def damping_correction(damping_ratio: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class FloorSpectrum:
-    """Elastic spectra of a floor.
+    """Elastic spectra of a floor: pseudo-accelerations at 5 % damping.
 
     Raises:
         ValueError: periods that do not rise from 0.05 s or less to 1 s or more, or values that are not positive.
@@ -349,7 +349,7 @@ MotionTarget = SiteAction | FloorSpectrum
 def read_spectrum(path: Path) -> dict[str, tuple[float, ...]]:
     """The columns of a CSV file by name, as any spreadsheet writes them: a line that names them, and lines of numbers.
 
-    period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2.
+    period_s, acceleration_m_s2 and, if it has one, vertical_acceleration_m_s2, for 5 % damping.
 
     Raises:
         ValueError: it cannot be read, has other columns, or a line without a number for each.

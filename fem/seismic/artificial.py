@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Required, TypedDict, Unpack
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
@@ -173,6 +173,15 @@ def raised(times: FloatArray, motion: FloatArray, peak: float) -> FloatArray:
     return motion + math.copysign(missing, motion[index]) * wavelet
 
 
+class MotionOptions(TypedDict, total=False):
+    """What `artificial_set` hands on to `artificial_motions`, whose defaults hold."""
+
+    seed: Required[int]
+    stationary: float
+    vertical: bool
+    second: float
+
+
 def artificial_motions(
     action: MotionTarget,
     *,
@@ -215,7 +224,7 @@ def artificial_motions(
 
 
 def artificial_set(
-    action: MotionTarget, *, count: int, longest: float = LAST_PERIOD_S, **asked: Any
+    action: MotionTarget, *, count: int, longest: float = LAST_PERIOD_S, **asked: Unpack[MotionOptions]
 ) -> list[GroundMotion]:
     """Motions to be used together: a motion that is correlated with one before is left out, and the next one taken.
 

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from itertools import combinations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -351,38 +350,36 @@ def floor_result(
     request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], checked: MotionSetCheck
 ) -> FloorResult | None:
     """What the motions are on the floor of a building, or on a given floor: means over the set; None on the ground."""
-    found: dict[str, Any]
     if request.on_given_floor:
-        motions, upward = floors[None], [one.vertical for one in floors[None] if one.vertical is not None]
-        found = {
-            "building": GIVEN_FLOORS[request.motions.source == "floor"],
-            "mean_m_s2": _numbers(checked.horizontal.mean),
-            "vertical_peak_m_s2": _mean_peak(upward) if upward else None,
-            "vertical_mean_m_s2": _numbers(checked.vertical.mean) if checked.vertical else (),
-        }
-    elif (building := request.building) is None or None in floors:
+        given, upward = floors[None], [one.vertical for one in floors[None] if one.vertical is not None]
+        return FloorResult(
+            building=GIVEN_FLOORS[request.motions.source == "floor"],
+            peak_m_s2=_mean_peak(one.horizontal for one in given),
+            peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in given])),
+            mean_m_s2=_numbers(checked.horizontal.mean),
+            vertical_peak_m_s2=_mean_peak(upward) if upward else None,
+            vertical_mean_m_s2=_numbers(checked.vertical.mean) if checked.vertical else (),
+        )
+    periods = tuple(period for period in floors if period is not None)
+    if (building := request.building) is None or not periods:
         return None
-    else:
-        shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
-        modes = f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
-        if building.storeys is None:
-            beyond = ", which this one exceeds" * (building.building_period_s > ONE_MODE_TO_S)
-            modes = (
-                f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s{beyond}; "
-                "no model of the structure as 4.3.5.1 (2)P asks for it"
-            )
-        motions = max(floors.values(), key=lambda varied: float(np.mean([one.peak for one in varied])))
-        found = {
-            "z_over_h": building.z_over_h,
-            "building": modes,
-            "building_periods_s": tuple(floors),
-            "damping_ratio": building.damping_ratio,
-            "mean_m_s2": _mean_spectrum([(one.step, one.horizontal) for one in motions], checked.periods),
-        }
+    shape = "equal storeys that shear" if building.kind == "shear" else "one stiffness in bending"
+    modes = f"{building.storeys} storeys, {shape}, all modes up to {HIGHEST_HZ:g} Hz"
+    if building.storeys is None:
+        beyond = ", which this one exceeds" * (building.building_period_s > ONE_MODE_TO_S)
+        modes = (
+            f"one mode, linear over the height, good for low, stiff buildings up to {ONE_MODE_TO_S:g} s{beyond}; no "
+            "model of the structure as 4.3.5.1 (2)P asks for it"
+        )
+    motions = max(floors.values(), key=lambda varied: _mean_peak(one.horizontal for one in varied))
     return FloorResult(
-        peak_m_s2=float(np.mean([motion.peak for motion in motions])),
-        peak_velocity_m_s=float(np.mean([motion.intensities["h"].peak_velocity_m_s for motion in motions])),
-        **found,
+        z_over_h=building.z_over_h,
+        building=modes,
+        building_periods_s=periods,
+        damping_ratio=building.damping_ratio,
+        peak_m_s2=_mean_peak(one.horizontal for one in motions),
+        peak_velocity_m_s=float(np.mean([one.intensities["h"].peak_velocity_m_s for one in motions])),
+        mean_m_s2=_mean_spectrum([(one.step, one.horizontal) for one in motions], checked.periods),
     )
 
 

@@ -69,20 +69,22 @@ def preview_of(request: SiteRequest, *, allow_outside: bool = False, as_json: bo
         CaseError, MeshError: it cannot be computed.
     """
     stages = Stages.of(request, Path(), allow_outside=allow_outside)
-    bodies, expected = stages.bodies, forecast(stages, cores())
+    expected = forecast(stages, cores())
     known = {
         "site": request.name,
         "title": request.heading.title,
         "spectrum": request.action.shape.source,
         "ag_S_m_s2": request.action.surface_acceleration,
         "avg_m_s2": request.action.vertical_acceleration,
-        "bodies": [body.to_json() for body in bodies] if as_json else bodies,
+        "bodies": [body.to_json() for body in stages.bodies],
         # what it is given by; None: the site moves it, perhaps through a building
         "floor": GIVEN_FLOORS[request.motions.source == "floor"] if request.on_given_floor else None,
         "motions": len(stages.ground),
         "set_valid": stages.checked.valid,
         "reasons": stages.checked.reasons,
+        # what the processing of the records changed
         "notes": list(dict.fromkeys(note for motion in stages.ground for note in motion.notes)),
+        # on the motions, of a rigid body; None: not known
         "factor_at_first_movement": stages.first_movement,
         "wind_utilisation": stages.wind,
         "forecast": expected.to_json() if as_json else expected,

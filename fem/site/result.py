@@ -1,4 +1,4 @@
-"""The result of `assess` as typed data: what `assess.json` holds, and what its page shows.
+"""The results of `assess` and `size` as typed data: what `assess.json` and `size.json` hold.
 
 Every field has the name of its key in the file, with its SI unit. Accelerations are magnitudes.
 """
@@ -223,7 +223,7 @@ class RuleRange(JsonBlock):
 class ScanPoint(ByRule):
     """What the rule finds in all motions of the set times one factor; no figure where a run of a group has none."""
 
-    factor: float = 1.0
+    factor: float
     failed: int = 0  #: runs without an outcome, of which the margin knows nothing
 
     @property
@@ -343,8 +343,8 @@ class SiteAnswer(ByRule):
 
 
 #: columns of the points of `size`: the answer at a value, and why it is not fulfilled, in words
-SAME = ("answer", "fulfilled", *(field.name for field in fields(ByRule)))
-POINT = {"value": float, "fails": str} | {name: figures.types_of(SiteAnswer)[name] for name in SAME}
+OF_ANSWER = ("answer", "fulfilled", *(field.name for field in fields(ByRule)))
+POINT = {"value": float, "fails": str} | {name: figures.types_of(SiteAnswer)[name] for name in OF_ANSWER}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -68,6 +68,7 @@ class RunGroup:
         """What counts: of each motion the worse sign; no figure where a run has none."""
         ends = Counter(run.outcome for run in self.runs)
         found = ScanPoint(
+            factor=self.first.factor,
             runs=len(self.runs),
             overturned=ends[Outcome.OVERTURNED],
             invalid=ends[Outcome.INVALID],

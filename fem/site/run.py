@@ -5,6 +5,7 @@ neither on that nor on the number of cores.
 """
 
 import hashlib
+import importlib
 import platform
 import time
 import tomllib
@@ -42,7 +43,6 @@ from fem.site.motions import (
     write_csv_files,
     write_ground,
 )
-from fem.site.page import site_report
 from fem.site.preview import forecast
 from fem.site.request import SiteRequest
 from fem.site.result import (
@@ -71,10 +71,8 @@ QUICK = (
 )
 FURTHER_ONES, OTHER_FACTORS = "further motions", "the set at other factors"
 DECIDING = "the deciding runs with their bands"
-CONTAINER, RECORDS = (
-    "container.toml",
-    "records",
-)  #: a file, and a folder of the records that the site file names
+CONTAINER = "container.toml"
+RECORDS = "records"  #: folder in the results of the records that the site file names
 MOST_COPIED = 20_000_000  #: of a record [bytes]; a larger one stays where it is
 LOOSE = 0.55  #: cost of a run with the energy tolerance of draws, over one of the set
 TIMES_THE_SET = 20  #: runs of all stages over those of the set
@@ -123,7 +121,7 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
 
 
 def digest_of(stages: Stages) -> str:
-    """The same of what is asked, quick or whole."""
+    """Equal for requests that give the same result; of --quick another than of the whole."""
     digest = site_hash(stages.request, stages.ground)
     return hash_of([digest, "quick"]) if stages.quick else digest
 
@@ -148,7 +146,8 @@ def _compute(stages: Stages, place: ResultFolder, runner: Runner) -> SiteResult:
         if stages.runs:
             rows = (stages.rows[key].values() for key in stages.in_order())
             place.write(RUNS, table_text(COLUMNS, rows))
-        place.write(PAGE, site_report(place.path, result))
+        page = importlib.import_module("fem.site.page")  # late, for it loads matplotlib
+        place.write(PAGE, page.site_report(place.path, result))
     return result
 
 

@@ -4,6 +4,7 @@ The key and its range, a scan, the changes located, the answer in words. Rows ar
 interrupted computation continues where it was.
 """
 
+import importlib
 import math
 import time
 from collections.abc import Mapping, Sequence
@@ -25,10 +26,9 @@ from fem.run.sureness import least_width, values_to_try
 from fem.runtime.identity import command_line
 from fem.runtime.own_files import remove_tree
 from fem.seismic.ground_motion import GroundMotion
-from fem.site.page import draw_size
 from fem.site.preview import forecast
 from fem.site.request import TABLES, SiteRequest
-from fem.site.result import SAME, SiteAnswer, SizeResult
+from fem.site.result import OF_ANSWER, SiteAnswer, SizeResult
 from fem.site.run import RUNS, answered, copy_files, set_of, site_hash, texts_of, write_floors
 from fem.site.runs import COLUMNS, bodies_of
 from fem.site.stages import Stages
@@ -260,9 +260,12 @@ def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "
 def size_result(
     axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
 ) -> SizeResult:
-    """Which values fulfil the rule, from the answers by value; a sentence tells what fails beyond, and the islands."""
+    """Which values fulfil the rule, from the answers by value.
+
+    A sentence says what fails next to the value wanted, and which stretches elsewhere fulfil the rule.
+    """
     points: tuple[dict[str, Any], ...] = tuple(
-        {"value": value, "fails": _reason(answer)} | {name: answer[name] for name in SAME}
+        {"value": value, "fails": _reason(answer)} | {name: answer[name] for name in OF_ANSWER}
         for value, answer in sorted(answers.items())
     )
     said = {point["value"]: "fulfilled" if point["fulfilled"] else "" for point in points}
@@ -417,7 +420,8 @@ def _compute(
         for key in stages.in_order()
     )
     place.write(RUNS, table_text({"value": float} | COLUMNS, rows))
-    place.write(FIGURE, draw_size(result, request.inputs))
+    page = importlib.import_module("fem.site.page")  # late, for it loads matplotlib
+    place.write(FIGURE, page.draw_size(result, request.inputs))
     return replace(result, wall_s=time.perf_counter() - began)
 
 

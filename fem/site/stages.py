@@ -195,7 +195,7 @@ class Stages:
 
         Where the rule fails, all runs of the groups that fail: it may count their mean.
         """
-        by_factor = runs_by_factor(self.runs, SET, SCAN)
+        by_factor = runs_by_factor(self.runs, SET, SCAN)  # by rising factor
         wanted: dict[RunKey, None] = {}
 
         def failing(runs: Sequence[SiteRun]) -> list[SiteRun]:
@@ -205,11 +205,11 @@ class Stages:
         def overturned(runs: Sequence[SiteRun]) -> list[SiteRun]:
             return [run for run in runs if run.outcome == Outcome.OVERTURNED]
 
-        for told in (failing, overturned):
-            first = next((factor for factor, runs in by_factor.items() if told(runs)), None)
+        for runs_of in (failing, overturned):
+            first = next((factor for factor, runs in by_factor.items() if runs_of(runs)), None)
             if first is not None:
                 known = {factor: str(factor == first) for factor in by_factor if factor <= first}
-                keys = [*map(key_of, told(by_factor[first]))]
+                keys = [*map(key_of, runs_of(by_factor[first]))]
                 for factor in values_to_try(known, resolution=0.0, inner=BETWEEN):
                     wanted |= dict.fromkeys(replace(key, stage=REFINED, factor=factor) for key in keys)
         return list(wanted)

@@ -66,7 +66,7 @@ def brief(monkeypatch):
     """Runs at one factor, and no page."""
     monkeypatch.setattr("fem.site.stages.SCANNED", ())
     monkeypatch.setattr("fem.site.run.confirmed", lambda *arguments: [])
-    monkeypatch.setattr("fem.site.run.site_report", lambda *arguments: "")
+    monkeypatch.setattr("fem.site.page.site_report", lambda *arguments: "")
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def computed(tmp_path_factory):
     place = site_file(folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("fem.site.run.confirmed", lambda *arguments: [])
-        patch.setattr("fem.site.run.site_report", lambda *arguments: "")
+        patch.setattr("fem.site.page.site_report", lambda *arguments: "")
         same = ground_motions(load_site(place), 4.0)  # instead of 72 others, which take as long as all runs
         patch.setattr("fem.site.stages.artificial_motions", lambda *_, first, **__: [same[first % 3]])
         return run_site(load_site(place), folder / "out", jobs=1), folder

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 from site_example import RUN, example
-from small_site import LEAST
 
 from fem.seismic.two_directions import largest_slip, largest_slips
 from fem.site.answer import answer_of
@@ -13,8 +12,19 @@ from fem.site.rule import groups_of
 from fem.site.stages import REPETITIONS, Stages
 from fem.study.driver import runner_of
 
-SITE = LEAST.replace("1.6", "2.8").replace("0.3,", "0.2,").replace("0.1", "{limit}")
-SITE += "[motions]\ncount = 3\n{motions}\n{building}"
+SITE = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 2.8
+[friction]
+mu_static = [0.2, 0.4]
+[limits]
+slip_m = {limit}
+[motions]
+count = 3
+{motions}
+{building}"""
 
 
 def slid(folder, **asked):
