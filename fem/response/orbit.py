@@ -323,7 +323,9 @@ def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANC
 
 
 def amplitude_growth(amplitudes: FloatArray) -> float:
-    """Largest amplitude in the second half of the window over that in the first, less one [-]; `GROWTH`: diverging.
+    """Largest amplitude in the second half of the window over that in the first, less one [-].
+
+    Beyond `GROWTH` it diverges.
 
     Args:
         amplitudes: (n,) largest |rotation| of each period, over the slenderness angle.

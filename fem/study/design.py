@@ -389,6 +389,8 @@ class Sweep(Design):
 class Ensemble(Design):
     """What an ensemble file asks for."""
 
+    random: tuple[RandomQuantity, ...] = field()  # without the default of `Design`
+    unknown_inputs: Unknown = "drawn"
     draws: int  #: at each point
     seed: int
     sampling: Sampling
@@ -417,10 +419,14 @@ class Ensemble(Design):
         if not self.unknown:
             return draws
         for k, row in enumerate(shares_of(dimensions=len(self.unknown), stream=STREAM).tolist()):
-            with suppress(ValueError):  # one that cannot be made has no unknown inputs
-                case, share = self.make.case(draws[k]), dict(zip(self.unknown, row, strict=True))
-                drawn = [interval for interval in ranges_of(case, penalty_of(case)) if interval.key in share]
-                unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
-                more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
-                draws[k] = draws[k]._replace(unknown=unknown, more=more)
+            try:
+                case = self.make.case(draws[k])
+                ranges = ranges_of(case, penalty_of(case))
+            except ValueError:  # one that cannot be made has no unknown inputs
+                continue
+            share = dict(zip(self.unknown, row, strict=True))
+            drawn = [interval for interval in ranges if interval.key in share]
+            unknown = drawn_values(drawn, [share[interval.key] for interval in drawn])
+            more = as_changed(case, unknown) if unknown and case.container.is_loose else unknown
+            draws[k] = draws[k]._replace(unknown=unknown, more=more)
         return draws

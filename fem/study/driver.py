@@ -228,7 +228,8 @@ class LoggedRuns(Generic[ItemT]):
                 if runner.stop():
                     break
                 self.told(len(items))
-                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of, self.work):
+                asked = self.what, items, self.make, self.model_of, self.work
+                for chunk, rows in runner.rows(*asked, takes_long=self.work is not None):
                     keys, logged = [tuple(self.key(item)) for item in chunk], map(self.logged, rows)
                     lines = [
                         line_of((*key, *(row[name] for name in [*self.columns][len(key) :])))

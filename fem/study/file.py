@@ -257,7 +257,30 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
             raise CaseError(f"{named} needs two or more numbers that rise")
         if any(isinstance(value, int) for value in along.values):
             raise CaseError(f"{named} takes whole numbers: there is nothing between its cells")
-    content = tables.get("maps", {})
+    sweep = Sweep(
+        name=origin.name,
+        text=origin.text,
+        title=heading.title,
+        limit_slip_m=heading.limit_slip_m,
+        base=base,
+        axes=axes,
+        derived=derived,
+        perturbation=perturbation,
+        threshold=threshold,
+        maps=_maps(tables.get("maps", {}), known, axis_list),
+    )
+    idle = list(keys)  # without an effect in any of the cases
+    for case in sweep.tried(sweep.corners(listed=True), "[axes] make this cell", str):
+        idle = [key for key in idle if _is_idle(case, key)]
+    if idle:
+        raise CaseError(
+            f"[axes] {idle[0]!r} has no effect in this case, which has other options; "
+            "choose the option it belongs to under [set], or leave the axis out"
+        )
+    return sweep
+
+
+def _maps(content: Mapping[str, Any], known: Mapping[str, Axis], axis_list: str) -> MapChoice:
     if isinstance(content.get("fixed", {}), dict):
         content = {**content, "fixed": flat("maps.fixed", content.get("fixed", {}))}
     maps = read_as("maps", MapChoice, content)
@@ -274,27 +297,7 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
         raise CaseError("[maps] a map needs two axes that are not fixed")
     if maps.x is not None and maps.x == maps.y:
         raise CaseError(f"[maps] a map needs two axes, got {maps.x!r} twice")
-    sweep = Sweep(
-        name=origin.name,
-        text=origin.text,
-        title=heading.title,
-        limit_slip_m=heading.limit_slip_m,
-        base=base,
-        axes=axes,
-        derived=derived,
-        perturbation=perturbation,
-        threshold=threshold,
-        maps=maps,
-    )
-    idle = list(keys)  # without an effect in any of the cases
-    for case in sweep.tried(sweep.corners(listed=True), "[axes] make this cell", str):
-        idle = [key for key in idle if _is_idle(case, key)]
-    if idle:
-        raise CaseError(
-            f"[axes] {idle[0]!r} has no effect in this case, which has other options; "
-            "choose the option it belongs to under [set], or leave the axis out"
-        )
-    return sweep
+    return maps
 
 
 def _is_idle(case: Case, key: str) -> bool:

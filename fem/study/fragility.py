@@ -175,8 +175,11 @@ def count_point(
         confidence=ensemble.confidence,
         independent=None if ensemble.motions is None else ensemble.replicates,
     )
-    above = "above" if share.low > ensemble.probability else "undecided"
-    region = "below" if share.high <= ensemble.probability else above
+    region = "undecided"
+    if share.high <= ensemble.probability:
+        region = "below"
+    elif share.low > ensemble.probability:
+        region = "above"
     slid = () if slips is None else slips[(codes == Ending.STANDING) & np.isfinite(slips)]
     row = {"probability": share.value, "low": share.low, "high": share.high, "region": region}
     row |= {SLIPPED: max(map(float, slid), default=None)}
@@ -184,7 +187,10 @@ def count_point(
 
 
 def fragility_of(ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointRow]) -> Fragility | None:
-    """The curve over the only axis: where it falls, the fitted lognormal; None with more axes."""
+    """The curve over the only axis: where it falls, the fitted lognormal; None with more axes.
+
+    `codes`: (points, draws).
+    """
     if len(ensemble.axes) != 1:
         return None
     strengths = np.array(ensemble.axes[0].values, dtype=float)

@@ -241,34 +241,15 @@ def read_hall(path: Path) -> HallFile:
     is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
     read = [name for name in names if name and not (is_result and name in RESULT_COLUMNS)]
     problems, meanings = [], dict[str, str]()
-
-    def stem(name: str) -> str:
-        return UNIT.sub("", name.lower().replace(" ", "_").replace("-", "_")).strip("_ ")
-
     plain = [key.rpartition(".")[2] for known in _plain_names().values() for key in known]
-    stems = {stem(name): name for name in plain} | OTHER_NAMES
+    stems = {_stem(name): name for name in plain} | OTHER_NAMES
     for column, count in Counter(read).items():
-        table_name, dot, _ = column.partition(".")
-        meant, own = _plain_names().get(column.lower(), []), stem(column)
-        # without its unit the same as a known name, or very like it
-        near = difflib.get_close_matches(own, stems, n=1, cutoff=LIKE) if len(own) > 1 and not meant else []
         try:
             if count > 1:
                 raise AxisError(f"occurs {count} times; keep one")
             if column in RESULT_COLUMNS:
                 raise AxisError("has the name of a result; rename it")
-            if dot and difflib.get_close_matches(table_name.lower(), NAMED, n=1, cutoff=LIKE):
-                field_of(column)
-                meanings[column] = "" if column in NO_AXIS or table_name == "document" else column
-            elif len(meant) > 1:
-                raise AxisError(f"may be {' or '.join(meant)}; write one of them")
-            elif near:
-                raise AxisError(
-                    f"is no key of a case; did you mean {stems[near[0]]!r}? To keep it as a note, rename it, for "
-                    f"instance to 'note {column}'"
-                )
-            else:
-                meanings[column] = meant[0] if meant else ""
+            meanings[column] = _meaning(column, stems)
         except AxisError as error:
             problems.append(f"column {column!r} {error}")
     for meaning, count in Counter(filter(None, meanings.values())).items():
@@ -278,6 +259,34 @@ def read_hall(path: Path) -> HallFile:
     if problems:
         raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
     return HallFile(path=path, table=table, header=names, meanings=meanings)
+
+
+def _stem(name: str) -> str:
+    return UNIT.sub("", name.lower().replace(" ", "_").replace("-", "_")).strip("_ ")
+
+
+def _meaning(column: str, stems: Mapping[str, str]) -> str:
+    """What a column means: a dotted key, or a name of `OWN`; empty for one that is kept as it is.
+
+    AxisError for one that looks like a key and is none, or may be several. `stems`: known names, by their stems.
+    """
+    table, dot, _ = column.partition(".")
+    if dot and difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE):
+        field_of(column)
+        return "" if column in NO_AXIS or table == "document" else column
+    meant = _plain_names().get(column.lower(), [])
+    if len(meant) > 1:
+        raise AxisError(f"may be {' or '.join(meant)}; write one of them")
+    if meant:
+        return meant[0]
+    own = _stem(column)  # without its unit the same as a known name, or very like it
+    near = difflib.get_close_matches(own, stems, n=1, cutoff=LIKE) if len(own) > 1 else []
+    if near:
+        raise AxisError(
+            f"is no key of a case; did you mean {stems[near[0]]!r}? To keep it as a note, rename it, for instance to "
+            f"'note {column}'"
+        )
+    return ""
 
 
 @cache
@@ -513,8 +522,8 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     to_check = partial(checks.missing, able[:count])
     checks.run(runner, iter(to_check, []))
     begun = replace(begun, checked=len(checks.lines))
-    if count := len(to_check()):
-        return begun.interrupted(f"{count} of the weakest are still to be repeated")
+    if left := len(to_check()):
+        return begun.interrupted(f"{left} of the weakest are still to be repeated")
     results.check()
     results.write(RUNS, runs.table())
     results.write(CHECKS, checks.table())
@@ -524,6 +533,13 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
         row["first_line"] = row["card"].partition(CARD_LINES)[0]
     for rank, (_, container) in enumerate(sorted(found, key=lambda pair: weakness(pair[1])), start=1):
         container["rank"] = rank
+    return _written(results, begun, hall, found)
+
+
+def _written(
+    results: ResultFolder, begun: HallResult, hall: Hall, found: Sequence[tuple[Item, Row]]
+) -> HallResult:
+    """The result of a list whose containers are computed; writes the list with its results."""
     table, outcomes, tags = list[Row](), Counter[str](), dict[str, dict[str, Any]]()
     for number, listed in enumerate(hall.rows, start=1):
         shown: Row = {"status": REFUSED, "reason": listed.reason}
@@ -563,7 +579,9 @@ def _compute(hall: Hall, begun: HallResult, results: ResultFolder, runner: Runne
     tried = (row for row in result.ranked if row["margin_governs"] is not None)
     least = min(tried, key=itemgetter("margin_governs"), default=None)
     known: dict[str, Any] = {
-        **{"left": left, "farthest": farthest, "least": least},
+        "left": left,
+        "farthest": farthest,
+        "least": least,
         "slid": farthest and FIGURES[SLIPPED].unit.text(farthest[SLIPPED], figures=2),
         "margin": least and times(least["margin_governs"]),
     }

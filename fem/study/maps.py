@@ -339,7 +339,11 @@ def _draw_boundary(ensemble: Ensemble, points: Sequence[PointRow], said: str) ->
     outside = outer[0].values if outer else (None,)
     shape = (len(outside), len(down.values), len(across.values))
     limit = f"{ensemble.probability:g}"
-    words = (f"at most {limit}", "not decided by the draws", f"more than {limit}")
+    words = {
+        "below": f"at most {limit}",
+        "undecided": "not decided by the draws",
+        "above": f"more than {limit}",
+    }
     codes = np.array([list(COLOURS).index(point["region"]) for point in points]).reshape(shape)
     shares = [point["probability"] for point in points]
     texts = np.array(["?" if share is None else f"{100.0 * share:.0f}" for share in shares]).reshape(shape)
@@ -359,5 +363,5 @@ def _draw_boundary(ensemble: Ensemble, points: Sequence[PointRow], said: str) ->
         y,
         maps,
         title=f"{ensemble.title or ensemble.name}\n{fill(said, LINE)}",
-        colours=dict(zip(words, COLOURS.values(), strict=True)),
+        colours={words[region]: colour for region, colour in COLOURS.items()},
     )

@@ -75,8 +75,9 @@ class Runner:
     ) -> Generator[tuple[list[ItemT], list[Row]], None, None]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
-        Items stand in an order in which those of one container are neighbours; `make` gives the case of one, and is
-        picklable. Other `work` that takes long is handed out one by one, and gives no row where it was stopped.
+        Items stand in an order in which those of one container are neighbours. `make` is picklable; it gives the case
+        of an item, or for `found` the item without its number. Other `work` that takes long is handed out one by one,
+        and gives no row where it was stopped.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
@@ -120,7 +121,10 @@ class Runner:
                 self.reporter.message(told())  # the last line does not stand at a time left
 
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
-        """The results of some work for each item, in their order; the ValueError of the first that raises one."""
+        """The results of some work for each item, in their order; the ValueError of the first that raises one.
+
+        `work` is picklable; KeyboardInterrupt where `stop` ended it.
+        """
         results: list[FoundT] = []
         for _, found in sorted(self.found(what, enumerate(items), work, takes_long=False), key=itemgetter(0)):
             if isinstance(found, ValueError):
@@ -185,7 +189,11 @@ class NamedStages:
             self.spent, self.since = self.spent + time.perf_counter() - self.since, None
 
 
-def _work_on(work: Callable[[ItemT], FoundT], of: Callable[[Any], ItemT], items: Sequence[Any]) -> list[Row]:
+def _work_on(
+    work: Callable[[ItemT], FoundT],
+    of: Callable[[tuple[int, ItemT]], ItemT],
+    items: Sequence[tuple[int, ItemT]],
+) -> list[Row]:
     rows: list[Row] = []
     for item in items:
         try:

@@ -6,10 +6,11 @@ effect is what the sweep shows.
 """
 
 from collections import Counter
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from operator import itemgetter
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -186,6 +187,22 @@ class Copies:
             nowhere: BoolArray = np.zeros(self._sweep.count, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
+    def _sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
+        """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first.
+
+        Both coefficients of friction moved a little at once count as the first of them.
+        """
+        if self._kind[cell] not in DECIDED:
+            return UNSURE, ()
+        rows = [row for _, row in sorted(self.rows.get(cell, {}).items())]
+        most = max((row.level for row in rows), default=SAME)
+        levels = [row.level if row.level == most else SAME for row in rows]
+        alone = [
+            replace(change, values=dict([*change.values.items()][:1])) if change.share == SMALL else change
+            for change in (row.copy.change for row in rows)
+        ]
+        return how_sure(levels), tuple(deciding_inputs(levels, alone))
+
     def band(self) -> tuple[dict[str, Any], Iterator[tuple[Any, ...]]]:
         """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`.
 
@@ -193,21 +210,7 @@ class Copies:
         around this one, counts as the cell, and so does one that failed; draws count where some were tried.
         """
         sweep, cells = self._sweep, range(self._sweep.count)
-        found = []  # how sure a cell is, and the inputs that decide: the smallest change that turns its outcome first
-        for cell in cells:
-            rows = [row for _, row in sorted(self.rows.get(cell, {}).items())]
-            most = max((row.level for row in rows), default=SAME)
-            levels = [row.level if row.level == most else SAME for row in rows]
-            # both coefficients of friction moved a little at once count as the first of them
-            alone = [
-                replace(change, values=dict([*change.values.items()][:1]))
-                if change.share == SMALL
-                else change
-                for change in (row.copy.change for row in rows)
-            ]
-            decided = self._kind[cell] in DECIDED
-            by = tuple(deciding_inputs(levels, alone)) if decided else ()
-            found.append((how_sure(levels) if decided else UNSURE, by))
+        found = [self._sureness(cell) for cell in cells]
         unsure = np.array([word == UNSURE for word, _ in found])
         everywhere = sweep.perturbation.cells != "near"  # else nothing is known of a cell that was left out
         words = [
@@ -221,11 +224,9 @@ class Copies:
 
         def values() -> Iterator[tuple[Any, ...]]:
             for cell, word, (_, by) in zip(cells, words, found, strict=True):
-                copies, kind, own = (
-                    self.rows.get(cell, {}).values(),
-                    self._kind[cell],
-                    self._runs[cell][TURNED],
-                )
+                copies = self.rows.get(cell, {}).values()
+                kind = self._kind[cell]
+                own = self._runs[cell][TURNED]
                 ratios = [ratio for copy in copies if (ratio := copy.run[TURNED]) is not None]
                 ends, share = (None, None), None
                 if ratios and own is not None and np.isfinite(own):
@@ -250,15 +251,18 @@ class Copies:
         }
         return added, values()
 
-    def compute(self, runner: Runner, **logged: Any) -> str:
-        """Compute the copies that the log does not hold; the rows of all, as a table. `logged`: see `refine`."""
+    def compute(self, runner: Runner, path: Path, told: Callable[[int], None]) -> str:
+        """Compute the copies that the log at `path` does not hold; the rows of all, as a table.
+
+        `told` is that of `LoggedRuns`.
+        """
 
         def key(item: Item) -> tuple[int, int, str]:
             changed = (f"{key}={value!r}" for key, value in item.unknown.items())
             return item.cell, item.draw, " ".join(changed)
 
-        own = {"what": COPIES, "columns": COLUMNS, "key": key, "ids": 2}
-        log = self._sweep.runs(**own, **logged, note=self._note)
+        own = {"what": COPIES, "columns": COLUMNS, "key": key, "ids": 2, "note": self._note}
+        log = self._sweep.runs(**own, path=path, told=told)
         log.run(runner, self._missing())
         return log.table()
 
@@ -283,26 +287,27 @@ class Copies:
         self, among: BoolArray, begin: BoolArray, small: BoolArray, *, drawn: bool
     ) -> Iterator[list[Item]]:
         """Missing draws, or all other copies: of the cells to begin with, then around those that a change turns."""
-        sweep, here = self._sweep, among & begin
-        reached: dict[str, BoolArray] = {}  # by change, the cells that have it
+        sweep, here, reached = self._sweep, among & begin, dict[str, BoolArray]()
+
+        def reach(copy: Copy) -> BoolArray:
+            """The cells that have this change."""
+            return reached.setdefault(copy.name, among & (small if copy.small else begin))
+
         while here.any():
             items = []
             for cell in np.flatnonzero(here).tolist():
                 known, item = self.rows.get(cell, {}), sweep.item(cell)
                 for number, copy in enumerate(self.of(cell)):
-                    if number not in known and copy.drawn == drawn:
-                        own = reached.setdefault(copy.name, among & (small if copy.small else begin))
-                        if own.flat[cell]:
-                            made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
-                            items.append((sweep.container_of(item), copy.name, cell, made))
+                    if number not in known and copy.drawn == drawn and reach(copy).flat[cell]:
+                        made = item._replace(draw=number, unknown=copy.change.values, more=copy.values)
+                        items.append((sweep.container_of(item), copy.name, cell, made))
             # of one container together, and within it of one change
             yield [item for *_, item in sorted(items, key=itemgetter(0, 1, 2))]
             here = np.zeros_like(among)
             for copy, turned in self.turned.values():
                 if copy.drawn == drawn:
-                    own = reached.setdefault(copy.name, among & (small if copy.small else begin))
-                    more = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~own
-                    reached[copy.name] = own | more
+                    more = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~reach(copy)
+                    reached[copy.name] = reach(copy) | more
                     here |= more
 
 
@@ -362,11 +367,16 @@ CHANGES: Columns = {name: types_of(Change)[name] for name in ("low", "high", "va
 
 
 def refine(
-    runner: Runner, sweep: Sweep, wanted: Threshold, runs: Mapping[int, RunShown], **logged: Any
+    runner: Runner,
+    sweep: Sweep,
+    wanted: Threshold,
+    runs: Mapping[int, RunShown],
+    path: Path,
+    told: Callable[[int], None],
 ) -> list[dict[str, Any]]:
     """Locate every change of outcome along the axis asked for: the rows of `thresholds.csv`, by `change_columns`.
 
-    `logged`: where the log of `LoggedRuns` is and what it tells; cases that it holds are not computed again.
+    Cases that the log at `path` holds are not computed again. `told` is that of `LoggedRuns`.
     """
     along = wanted.axis
     axis = next(axis for axis in sweep.axes if axis.key == along)
@@ -390,7 +400,7 @@ def refine(
         ]
 
     own = {"what": BETWEEN, "columns": TRIED_COLUMNS, "key": lambda item: (item.cell, item.point[along])}
-    sweep.runs(**own, **logged, ids=2, note=note).run(runner, iter(between_cells, []))
+    sweep.runs(**own, path=path, told=told, ids=2, note=note).run(runner, iter(between_cells, []))
     return [
         sweep.point(first) | {key: getattr(change, key) for key in CHANGES}
         for first in sorted(lines)

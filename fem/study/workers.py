@@ -73,7 +73,7 @@ class LocalWorkers:
     therefore shared by one thread of this process, which works while the others start, and one process for each other
     core. They are forks of this process where it has no other thread yet, as at the command line. Started processes are
     kept for later cases; leaving the context ends them at once, as a case may take an hour. `worth`: number of cases of
-    a model from which new processes are started.
+    a model from which new processes are started; default: `WORTH_PROCESSES`.
     """
 
     def __init__(self, jobs: int, worth: Mapping[str, float] | None = None) -> None:
@@ -155,8 +155,8 @@ def hand_out(
                     chunk = list(islice(remaining, at_a_time))
                     if not chunk:
                         break
-                    # It may start a process. A signal to the whole group, as Ctrl-C sends it, is held back in it for
-                    # good: it would else meet the process before `_end_with_parent` does.
+                    # This may start a process, which keeps the signals blocked: Ctrl-C, sent to the whole group, would
+                    # else meet it before `_end_with_parent` does.
                     held = () if sys.platform == "win32" else signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
                     try:
                         waiting[pool.executor.submit(work, chunk)] = pool, chunk

@@ -2,11 +2,13 @@
 
 import json
 import os
+import random
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -25,9 +27,11 @@ from fem.runtime.progress import Reporter
 from fem.study.driver import LoggedRuns
 from fem.study.file import load_sweep
 from fem.study.hall import read_hall, run_hall
+from fem.study.runner import Runner
 from fem.study.sweep import check_size, run_sweep
 from fem.study.sweep_table import open_sweep
 from fem.study.table import line_of, row_of
+from fem.study.workers import LocalWorkers
 
 HALL = "name,width_m,boxes\n" + "".join(f"{k},{0.6 + 0.02 * k:.2f},2\n" for k in range(40))
 RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
@@ -196,7 +200,7 @@ def test_results_of_another_program_are_not_continued(tmp_path):
 def _logged(path, columns, rows, told=pytest.fail, items=(1, 2), **more):
     """Rows of items that are their first column, in a log."""
     reporter = SimpleNamespace(warning=told)
-    runner = SimpleNamespace(reporter=reporter, stop=lambda: False, rows=lambda *_: rows)
+    runner = SimpleNamespace(reporter=reporter, stop=lambda: False, rows=lambda *_, **kw: rows)
     one = {"what": "", "path": path, "columns": columns, "key": lambda item: [item], "ids": 1}
     runs = LoggedRuns(**one | {"make": None, "model_of": None} | more)
     runs.run(runner, [items])
@@ -222,6 +226,21 @@ def test_a_row_that_says_otherwise_of_what_was_run_is_computed_again(tmp_path):
     assert runs.lines == {("x", 1): "x,1,0.3,0.5", ("x", 2): "x,2,0.3,0.25"}
     assert path.read_text() == "of,a,mu,b\nx,1,0.3,0.5\ny,2,0.3,0.5\nx,2,0.3,0.25\n"
     assert told == [f"{path}: rows that say otherwise than this study, which are left out: 2"]
+
+
+def test_work_in_place_of_runs_is_handed_out_one_by_one(tmp_path):
+    """It may take an hour."""
+    handed = []
+
+    def work(make, items):
+        handed.append(items)
+        return [{"status": "completed"} for _ in items]
+
+    one = {"what": "", "path": tmp_path / "checks.csv", "columns": {"a": int, "status": str}, "make": None}
+    one |= {"key": lambda item: [item], "ids": 1, "model_of": lambda item: "rigid", "work": work}
+    with LocalWorkers(1) as workers_of:
+        LoggedRuns(**one).run(Runner(workers_of=workers_of), [[1, 2, 3]])
+    assert sorted(handed) == [[1], [2], [3]]
 
 
 def test_a_row_reads_back_with_the_types_of_its_columns():
@@ -257,6 +276,30 @@ def test_the_table_does_not_depend_on_the_jobs(small, computed, tmp_path):
     assert answers[0].count(b"\n") == 1 + 2  # a row for each frequency
     assert {"overturned", "rest"} <= set(one["outcomes"])
     assert not (computed / "rows.csv").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_a_sweep_killed_five_times_gives_the_same_table(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "small.toml").write_text(SMALL.replace("count = 5", "count = 80"), encoding="utf-8")
+    choice, folder = random.Random(0), tmp_path / "outputs" / "small"
+    command = [sys.executable, "-m", "fem", "sweep", "small.toml", "-j", "2", "-q"]
+
+    def logged():
+        return sum(path.stat().st_size for path in folder.glob("*.csv"))  # of the cells and of the copies
+
+    for k in range(5):
+        size, deadline = logged(), time.monotonic() + 60.0
+        with subprocess.Popen([*command, *["--resume"] * bool(k)]) as process:
+            while logged() <= size and process.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.005)
+            time.sleep(choice.uniform(0.0, 0.3))
+            process.kill()
+        assert process.returncode == -signal.SIGKILL
+    assert main(["sweep", "small.toml", "--resume", "-q"]) == 0
+    assert main(["sweep", "small.toml", "-q", "--out", "alone"]) == 0
+    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
 
 
 def test_the_folder_opens_as_arrays(small, computed):
