@@ -151,8 +151,8 @@ def paper_criteria(experiments: Experiments) -> Evidence:
     yield from _witnesses(stack, criteria.paper_rule)
     rows = []
     for outcome_map in every_map:
-        for name, rule in criteria.CRITERIA.items():
-            every, sure = outcome_map.count(rule), outcome_map.count(rule, sure=True)
+        for name, criterion in criteria.CRITERIA.items():
+            every, sure = outcome_map.count(criterion), outcome_map.count(criterion, sure=True)
             counted = every.cells, every.right, every.conservative, every.unconservative
             rows.append((outcome_map.title, name, *counted, sure.unconservative))
     yield table(
