@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from browser import CHROMIUM, FAINT, Browser
 from site_example import write_example
+from small_sweep import sweep_in
 from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
@@ -17,7 +18,6 @@ from fem.results.errors import FolderError
 from fem.results.reader import open_run
 from fem.runtime.progress import Reporter
 from fem.site.page import site_report
-from fem.study.file import load_sweep
 from fem.study.hall import read_hall, run_hall
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
@@ -55,9 +55,14 @@ def pages(gallery, tmp_path_factory):
     place = tmp_path_factory.mktemp("pages")
     gallery.copy("default", place)
     (place / "run.html").write_text(run_report(gallery.run("default")), encoding="utf-8")
-    (place / "boxes.toml").write_text(SWEEP)
-    asked = load_sweep(str(place / "boxes.toml"))
-    run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=Reporter())
+    run_sweep(
+        sweep_in(place, SWEEP, "boxes"),
+        place / "boxes",
+        jobs=1,
+        resume=False,
+        force=False,
+        reporter=Reporter(),
+    )
     (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
     (place / "list.csv").write_text(LIST, encoding="utf-8")
     base = load_case("seed_box", ("solver.model=rigid", "solver.duration_s=1"))

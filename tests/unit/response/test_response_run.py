@@ -1,9 +1,9 @@
 """A response curve in its folder: tables, figures; stopped or killed it continues to the same bytes."""
 
-import csv
 import json
 
 import pytest
+from small_sweep import rows_of
 
 from contact.stepping.body import CENTRE_Z, ROTATION
 from fem.__main__ import main
@@ -41,16 +41,13 @@ def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
     assert main(line) == 0
     result = json.loads(capsys.readouterr().out)
     assert result == json.loads((tmp_path / "r" / "response.json").read_text())
-    with (tmp_path / "r" / "response.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "r" / "response.csv")
     assert [row["direction"] for row in rows] == ["up", "up", "down", "down"]
     for row, point in zip(rows, result["points"], strict=True):
         assert float(row["rotation_ratio"]) == point["rotation_ratio"]
-    with (tmp_path / "r" / "sections.csv").open() as file:
-        assert len(list(csv.DictReader(file))) >= 4 * 8
+    assert len(rows_of(tmp_path / "r" / "sections.csv")) >= 4 * 8
     for name, models in (("starts", {"rigid"}), ("shell", {"reduced"})):
-        with (tmp_path / "r" / f"{name}.csv").open() as file:
-            assert {row["model"] for row in csv.DictReader(file)} == models
+        assert {row["model"] for row in rows_of(tmp_path / "r" / f"{name}.csv")} == models
     names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
     assert names == {"response_curve.svg", "portraits.svg"}
 

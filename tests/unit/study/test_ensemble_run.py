@@ -1,9 +1,8 @@
 """An ensemble from its file to its folder: seeded, the same on any number of cores, and refused."""
 
-import csv
-
 import numpy as np
 import pytest
+from small_sweep import rows_of
 
 from fem.case.files import ENSEMBLES
 from fem.case.tables.unknown_inputs import ranges_of
@@ -56,8 +55,7 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores(tmp_path):
     run_ensemble(ensemble, folder=tmp_path / "two", jobs=2)
     for name in ("ensemble.json", "points.csv", "draws.csv", "figures/fragility.svg"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
-    with (tmp_path / "one" / "draws.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "one" / "draws.csv")
     assert len(rows) == 24
     for k, point in enumerate(one["points"]):
         found = [row["outcome"] for row in rows[8 * k : 8 * k + 8]]

@@ -6,6 +6,7 @@ import json
 import shlex
 
 import pytest
+from small_sweep import rows_of
 
 from fem.__main__ import main
 from fem.case.case import load_case
@@ -61,10 +62,6 @@ def _hall_of(tmp_path, text, **options):
     """The result of a list, whose margins are not asked for by default."""
     options = {"checks": "none"} | options
     return run_hall(read_hall(listed(tmp_path, text)), load_case("base.toml"), tmp_path / "out", **options)
-
-
-def rows_of(path):
-    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
 
 
 def test_a_row_is_the_run_by_itself_bit_for_bit(tmp_path, base, capsys):

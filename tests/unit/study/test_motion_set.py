@@ -1,12 +1,12 @@
 """Sets of motions: how they are written, what is refused and told, and each as a value of an axis or as a draw."""
 
-import csv
 import json
 import re
 
 import numpy as np
 import pytest
 from motion_files import write_motion, write_pair
+from small_sweep import rows_of, sweep_in
 
 from fem.case.case import CaseError, load_case, read_case
 from fem.model.motion import build_motion
@@ -16,7 +16,7 @@ from fem.report.study_page import ensemble_report, sweep_report
 from fem.runtime.intervals import binomial_interval, estimate
 from fem.study.axes import read_axis
 from fem.study.ensemble import begun_result, run_ensemble
-from fem.study.file import load_ensemble, load_sweep
+from fem.study.file import load_ensemble
 from fem.study.motions import read_motion_set, spectra_of
 from fem.study.sweep import asked_of, run_sweep
 from fem.study.sweep_table import open_sweep
@@ -117,11 +117,7 @@ SIGNS = "vertical.scale = [1.0, -1.0]\n"
 
 @pytest.fixture
 def sweep_of(tmp_path, written):
-    def read(axes):
-        (tmp_path / "try.toml").write_text(HEAD + axes, encoding="utf-8")
-        return load_sweep(tmp_path / "try.toml")
-
-    return read
+    return lambda axes: sweep_in(tmp_path, HEAD + axes)
 
 
 def test_a_cell_has_both_components_of_its_motion(sweep_of):
@@ -170,8 +166,7 @@ def test_the_peak_is_an_axis_of_records_too_and_ends_with_the_answer(sweep_of, t
     )["derived"]
     assert told_cells[1] == {"key": "vertical.file", "values": table["vertical.file"].tolist()}
     assert info["answer"].startswith("peak acceleration: stood in every motion tried up to ")
-    with (tmp_path / "out" / "answers.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "out" / "answers.csv")
     # the signs of a motion count as one
     assert [row["motion.file"] for row in rows] == ["a_h.csv", "b_h.csv"]
     for row in rows:
@@ -227,8 +222,7 @@ def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
     assert [one["file"] for one in result["motions"]] == ["a_h.csv", "b_h.csv", "c_h.csv"]
     for one in result["motions"]:
         assert one["stood"] + one["overturned"] + one["failed"] == 8  # four draws at each of two points
-    with (folder / "draws.csv").open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(folder / "draws.csv")
     assert [rows[k]["vertical.file"] for k in (0, 4, 8)] == ["a_v.csv", "b_v.csv", ""]
     fallen = sum(row["outcome"] == "overturned" for row in rows)
     assert sum(one["overturned"] for one in result["motions"]) == fallen

@@ -6,6 +6,7 @@ import warnings
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from small_sweep import sweep_in
 
 from fem.case.case import case_hash
 from fem.case.files import CASES, SWEEPS
@@ -19,12 +20,7 @@ FREQUENCY = '"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 
 
 @pytest.fixture
 def sweep_of(tmp_path):
-    def read(body, head=HEAD):
-        path = tmp_path / "try.toml"
-        path.write_text(head + body, encoding="utf-8")
-        return load_sweep(path)
-
-    return read
+    return lambda body: sweep_in(tmp_path, HEAD + body)
 
 
 def test_the_last_axis_is_the_fastest(sweep_of):
