@@ -95,16 +95,6 @@ def test_unknown_inputs_do_not_follow_the_others(sampling):
     assert both == pytest.approx(0.25, abs=4.0 * np.sqrt(0.25 * 0.75 / 4096))
 
 
-@pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
-def test_each_replicate_is_stratified_and_no_two_are_the_same(sampling):
-    shares = draw_shares(sampling, seed=1, cell=0, dimensions=3, draws=64, replicates=4)
-    blocks = shares.reshape(4, 16, 3)
-    for block in blocks:
-        strata = np.sort(np.floor(16 * block), axis=0)
-        assert np.array_equal(strata, np.tile(np.arange(16)[:, None], 3))
-    assert len({block.tobytes() for block in blocks}) == 4
-
-
 @pytest.mark.parametrize(
     ("given", "middle", "ends"),
     [

@@ -60,13 +60,6 @@ def test_a_row_is_the_verdict_of_its_case(cases):
         assert {name: row[name] for name in SCALARS} == {name: getattr(verdict, name) for name in SCALARS}
 
 
-def test_rows_come_in_the_order_of_the_cases_whatever_the_jobs(cases):
-    one = run_cases(cases, jobs=1)
-    assert without_wall(one) == without_wall(run_cases(cases, jobs=2))
-    assert without_wall(one[::-1]) == without_wall(run_cases(cases[::-1], jobs=2))
-    assert [row["outcome"] for row in one[:2]] == ["rock", "overturned"]
-
-
 def test_processes_give_the_rows_that_threads_give(cases, monkeypatch):
     few = [case for case in cases if case.solver.model == "rigid"]
     assert len(few) > 1

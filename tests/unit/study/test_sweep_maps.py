@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
@@ -98,16 +97,6 @@ def test_two_axes_span_a_map_and_the_rest_has_panels():
     turned = sweep_map(table, "outcome", MapChoice(x="contact.mu_static", y="motion.peak_acceleration_m_s2"))
     assert len(panels_of(turned)) == 5
     assert colours_of(panels_of(turned)[0]).shape == (4, 3, 4)
-
-
-def test_a_cell_stands_where_its_axes_say():
-    table = table_of(FREQUENCY, PEAK)
-    colours = colours_of(panels_of(sweep_map(table, "rotation", MapChoice()))[0])
-    assert colours.shape == (4, 5, 4)
-    cell = 3 * 4 + 1  # frequency 8, peak 2
-    assert tuple(colours[1, 3]) == pytest.approx(
-        matplotlib.colormaps["viridis"](table["rotation_ratio"][cell])
-    )
 
 
 @pytest.mark.parametrize("case", ["seed_stack_plateau", "my-stack"])
