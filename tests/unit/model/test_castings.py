@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from cases import named_case
+from runs import pulse
 
 import fem
 from contact.reference.rigid_block import RigidBlock
@@ -99,10 +100,9 @@ def test_feet_are_at_rest_on_the_points_that_are_least_crushed():
     """The outer points, which rocking crushes most, bear nothing then: the run ends, and does not wait for them."""
     solid = {"container.section": "solid", "container.post_m": None, "container.corner_post_N": None}
     feet = {"support.kind": "feet", "support.foot_m": 0.2, "support.casting_m": None}
-    pulse = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": 3.6}
     soft = {"contact.mu_static": 2.0, "contact.mu_kinetic": 2.0, "floor.bearing_strength_Pa": 7e6}
     solver = {"solver.model": "rigid", "solver.duration_s": "auto", "output.fields_s": 0.0}
-    keys = {f"motion.{key}": value for key, value in pulse.items()} | solid | feet | soft | solver
+    keys = pulse(3.6, 1.0, "sine") | solid | feet | soft | solver
     model = build_model(named_case("stack_on_concrete", keys))
     _, error = run_without_history(model, None)
     assert error is None

@@ -2,21 +2,13 @@
 
 import pytest
 from cases import named_case
+from runs import pulse
 
 from fem.model.container import changed_container, discretise
 from fem.model.model import build_model
 from fem.run.simulation import run_without_history
 
-PULSE = {
-    "solver.model": "rigid",
-    "floor.kind": "rigid",
-    "contact.mu_static": 2.0,
-    "motion.kind": "pulse",
-    "motion.shape": "rectangular",
-    "motion.pulse_s": 0.3,
-    "solver.duration_s": 0.3,
-    "output.fields_s": 0.0,
-}
+RIGID = {"solver.model": "rigid", "floor.kind": "rigid", "contact.mu_static": 2.0, "output.fields_s": 0.0}
 WEAK_FLOOR = {
     "floor.kind": "slab",
     "floor.preset": "concrete C25/30",
@@ -29,8 +21,8 @@ SLENDERNESS = 0.55 / 2.0
 
 def rocks(values: dict, share: float, toward: float) -> bool:
     """Whether the stack rocks under a pulse of a share of the uplift acceleration of such a block."""
-    peak = share * 9.81 * toward
-    case = named_case("seed_stack_plateau", PULSE | values | {"motion.peak_acceleration_m_s2": peak})
+    pushed = pulse(share * 9.81 * toward, 0.3) | {"solver.duration_s": 0.3}
+    case = named_case("seed_stack_plateau", RIGID | pushed | values)
     own = case.with_values({"container.eccentricity_m": 0.0, "container.centroid_m": 0.5})
     model = build_model(case, changed_container(case, discretise(own), own))
     verdict, error = run_without_history(model, None)

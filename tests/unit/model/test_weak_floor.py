@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from cases import named_case
 from floors import half_sine_pulse, one_sine_pulse
+from runs import pulse
 
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
@@ -15,14 +16,8 @@ from fem.run.simulation import run_without_history
 
 WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
 STRENGTH = 5e6  #: of asphalt [Pa]
-ASPHALT = {
-    "solver.model": "rigid",
-    "contact.mu_static": 2.0,
-    "contact.mu_kinetic": 2.0,
-    "floor.kind": "slab",
-    "floor.preset": "asphalt",
-    "output.fields_s": 0.0,
-}
+ASPHALT = {"solver.model": "rigid", "contact.mu_static": 2.0, "contact.mu_kinetic": 2.0}
+ASPHALT |= {"floor.kind": "slab", "floor.preset": "asphalt", "output.fields_s": 0.0}
 
 
 def on_asphalt(times, **values):
@@ -73,9 +68,8 @@ def test_the_points_of_a_flat_base_find_by_themselves_where_it_turns(bears, shar
         "floor.corner_patch_m": None,
     }
     uplift = 9.81 * (EDGE - 0.25 * 1.1 * 98.1 / bears) / 2.0
-    push = {"kind": "pulse", "shape": "half-sine", "pulse_s": 6.0, "peak_acceleration_m_s2": share * uplift}
-    motion = {f"motion.{key}": value for key, value in push.items()}
-    case = named_case("seed_stack_plateau", ASPHALT | flat | soft | motion | {"solver.duration_s": 6.0})
+    push = pulse(share * uplift, 6.0, "half-sine") | {"solver.duration_s": 6.0}
+    case = named_case("seed_stack_plateau", ASPHALT | flat | soft | push)
     model = build_model(case)
     assert model.static.uplift_acceleration == pytest.approx(uplift)
     verdict, error = run_without_history(model, None)
@@ -101,22 +95,18 @@ def block(times):
 )
 def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, peak):
     duration = 0.9 if shape == "half-sine" else 6.0  # the corners of the weakest do not survive an impact
-    keys = {"kind": "pulse", "shape": shape, "pulse_s": seconds, "peak_acceleration_m_s2": peak}
-    case = on_asphalt(
-        times, **{f"motion.{key}": value for key, value in keys.items()}, **{"solver.duration_s": duration}
-    )
+    case = on_asphalt(times, **pulse(peak, seconds, shape), **{"solver.duration_s": duration})
     verdict, error = run_without_history(build_model(case), None)
     assert error is None and verdict.valid
-    pulse = half_sine_pulse if shape == "half-sine" else one_sine_pulse
-    expected = simulate_rocking(block(times), pulse(peak=peak, duration=seconds), duration=duration)
+    floor = half_sine_pulse if shape == "half-sine" else one_sine_pulse
+    expected = simulate_rocking(block(times), floor(peak=peak, duration=seconds), duration=duration)
     assert verdict.max_rotation_rad == pytest.approx(expected.largest_rotation, rel=0.05)
 
 
 @pytest.mark.parametrize(("peak", "outcome"), [(3.6, "invalid"), (3.8, "overturned")])
 def test_a_fall_before_the_floor_is_destroyed_is_a_fall(peak, outcome):
     # 6.5 mm deep as it passes its slenderness angle, and no deeper; where it stands it falls back on that floor, 24 mm.
-    keys = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": peak}
-    case = on_asphalt(1.5, **{f"motion.{key}": value for key, value in keys.items()})
+    case = on_asphalt(1.5, **pulse(peak, 1.0, "sine"))
     verdict, error = run_without_history(build_model(case), None)
     assert error is None and verdict.outcome == outcome
     expected = simulate_rocking(block(1.5), one_sine_pulse(peak=peak, duration=1.0), duration=20.0)

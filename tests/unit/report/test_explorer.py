@@ -11,7 +11,6 @@ from small_sweep import sweep_in
 
 import fem
 from fem.report.explorer import explorer
-from fem.runtime.progress import Reporter
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
 
@@ -34,7 +33,7 @@ cells = "all"
 def made(tmp_path_factory):
     place = tmp_path_factory.mktemp("explorer")
     sweep = sweep_in(place, SWEEP, "boxes")
-    run_sweep(sweep, place / "boxes", jobs=1, resume=False, force=False, reporter=Reporter())
+    run_sweep(sweep, place / "boxes", jobs=1)
     page = place / "explorer.html"
     page.write_text(explorer(sweep, place / "boxes", 1), encoding="utf-8")
     return sweep, page

@@ -16,7 +16,6 @@ from fem.report.run_page import run_report
 from fem.report.study_page import ensemble_report, hall_report, response_report, sweep_report
 from fem.results.errors import FolderError
 from fem.results.reader import open_run
-from fem.runtime.progress import Reporter
 from fem.site.page import site_report
 from fem.study.hall import read_hall, run_hall
 from fem.study.sweep import run_sweep
@@ -55,14 +54,7 @@ def pages(gallery, tmp_path_factory):
     place = tmp_path_factory.mktemp("pages")
     gallery.copy("default", place)
     (place / "run.html").write_text(run_report(gallery.run("default")), encoding="utf-8")
-    run_sweep(
-        sweep_in(place, SWEEP, "boxes"),
-        place / "boxes",
-        jobs=1,
-        resume=False,
-        force=False,
-        reporter=Reporter(),
-    )
+    run_sweep(sweep_in(place, SWEEP, "boxes"), place / "boxes", jobs=1)
     (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
     (place / "list.csv").write_text(LIST, encoding="utf-8")
     base = load_case("seed_box", ("solver.model=rigid", "solver.duration_s=1"))

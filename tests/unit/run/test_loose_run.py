@@ -17,18 +17,10 @@ from fem.results.run_result import Verdict
 from fem.run.summary import plain_summary
 
 #: three boxes that slide on one another
-SLIPPERY = {
-    "container.boxes": 3,
-    "container.joints": "loose",
-    "joints.mu_static": 0.2,
-    "motion.kind": "harmonic",
-    "motion.peak_acceleration_m_s2": 5.0,
-    "motion.frequency_Hz": 1.0,
-    "solver.model": "rigid",
-    "solver.duration_s": 2.0,
-    "output.fields_s": 0.5,
-    "output.figures": False,
-}
+SLIPPERY = {"container.boxes": 3, "container.joints": "loose", "joints.mu_static": 0.2}
+SLIPPERY |= {"motion.kind": "harmonic", "motion.peak_acceleration_m_s2": 5.0, "motion.frequency_Hz": 1.0}
+SLIPPERY |= {"solver.model": "rigid", "solver.duration_s": 2.0}
+SLIPPERY |= {"output.fields_s": 0.5, "output.figures": False}
 KEYS = {"max_rotation_rad", "max_slip_m", "residual_slip_m", "max_opening_m", "fell"}
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from interrupted_runs import stored_run
+from runs import pulse
 
 from fem import compute
 from fem.case.case import load_case
@@ -86,12 +87,10 @@ def test_what_a_floor_without_vertical_motion_writes_stays(tmp_path):
 
 
 def test_a_run_on_two_motions_lasts_as_long_as_the_longer_one():
-    pulse = {"kind": "pulse", "shape": "sine", "peak_acceleration_m_s2": 1.0}
-    case = load_case("seed_box").with_values(
-        {f"motion.{key}": value for key, value in (pulse | {"pulse_s": 0.5}).items()}
-        | {f"vertical.{key}": value for key, value in (pulse | {"pulse_s": 0.4, "delay_s": 0.3}).items()}
-        | {"solver.duration_s": "auto", "solver.model": "rigid"}
-    )
+    later = pulse(1.0, 0.4, "sine") | {"motion.delay_s": 0.3}
+    upward = {key.replace("motion", "vertical"): value for key, value in later.items()}
+    free = {"solver.duration_s": "auto", "solver.model": "rigid"}
+    case = load_case("seed_box").with_values(pulse(1.0, 0.5, "sine") | upward | free)
     model = build_model(case)
     assert model.rest_from == 0.7
     assert model.duration == 60.7

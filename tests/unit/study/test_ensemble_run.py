@@ -64,11 +64,8 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores(tmp_path):
 
 def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
     drawn = load_ensemble(changed(tmp_path))
-    given = {
-        "contact.mu_static",
-        "contact.mu_kinetic",
-        "support.kind",
-    }  # drawn, derived, not drawn of a stack
+    # drawn, derived, not drawn of a stack
+    given = {"contact.mu_static", "contact.mu_kinetic", "support.kind"}
     assert set(drawn.unknown) == {one.key for one in ranges_of(drawn.base, 1e9)} - given
     assert drawn.held == ""
     held = load_ensemble(changed(tmp_path, ("seed = 4\n", 'seed = 4\nunknown_inputs = "held"\n')))

@@ -101,14 +101,9 @@ def test_a_path_out_of_the_folder_is_refused(tmp_path, read, text, case):
 
 @READERS
 def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
-    path = written(tmp_path, text, "seed_box")
-    changed = path.read_text(encoding="utf-8")
-    changed = (
-        changed.replace("[axes]", '"contact.mu_static" = 0.5\n[axes]')
-        if "[set]" in changed
-        else (changed + '[set]\n"contact.mu_static" = 0.5\n')
-    )
-    path.write_text(changed, encoding="utf-8")
+    own = '"contact.mu_static" = 0.5\n'
+    set_too = text.replace("[axes]", f"{own}[axes]") if "[set]" in text else f"{text}[set]\n{own}"
+    path = written(tmp_path, set_too, "seed_box")
     with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
         read(path)
 

@@ -82,13 +82,8 @@ def test_endless_impacts_end_in_rest_or_in_sliding():
     )
     assert still.states[-1].mode is PlanarMode.REST
     # pushed along on slippery ground, it stops rocking before it stops sliding
-    pushed = simulate_planar_block(
-        PlanarBlock(body=BOX, mu_static=0.1, mu_kinetic=0.1),
-        still_floor(),
-        duration=5.0,
-        rotation=0.02,
-        slip_velocity=2.0,
-    )
+    slippery = PlanarBlock(body=BOX, mu_static=0.1, mu_kinetic=0.1)
+    pushed = simulate_planar_block(slippery, still_floor(), duration=5.0, rotation=0.02, slip_velocity=2.0)
     names = [state.mode for state in pushed.states]
     assert names[-2:] == [PlanarMode.SLIDE, PlanarMode.REST]
 
