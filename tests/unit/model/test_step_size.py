@@ -97,14 +97,9 @@ def test_eager_steps_on_a_record_are_longer_and_keep_its_motion():
     assert verdicts[1].rotation_ratio == pytest.approx(verdicts[0].rotation_ratio, rel=2e-3)
 
 
-@pytest.fixture
-def few_attempts(monkeypatch):
-    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_SPARE", 50.0)
-    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_ROCKING", 1.0)
-    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_STEP", 0.1)
-
-
-def test_a_run_without_headway_fails_and_says_so(few_attempts):
+def test_a_run_without_headway_fails_and_says_so(monkeypatch):
+    for name, few in (("SPARE", 50.0), ("OF_ROCKING", 1.0), ("OF_STEP", 0.1)):
+        monkeypatch.setattr(contact.stepping.control, f"ATTEMPTS_{name}", few)
     _, ending = finished(rigid())
     assert ending.status == "failed"
     assert ending.error is not None and "no progress:" in ending.error

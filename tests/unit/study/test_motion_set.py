@@ -8,7 +8,7 @@ import pytest
 from motion_files import write_motion, write_pair
 from small_sweep import rows_of, sweep_in
 
-from fem.case.case import CaseError, load_case, read_case
+from fem.case.case import CaseError, load_case
 from fem.model.motion import build_motion
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
@@ -20,26 +20,6 @@ from fem.study.file import load_ensemble
 from fem.study.motions import read_motion_set, spectra_of
 from fem.study.sweep import asked_of, run_sweep
 from fem.study.sweep_table import open_sweep
-
-CASE = """
-[container]
-width_m = 1.1
-height_m = 4.0
-weight_N = 98100.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "table"
-file = "a_h.csv"
-quantity = "acceleration"
-unit = "m/s2"
-[vertical]
-quantity = "acceleration"
-unit = "m/s2"
-[solver]
-model = "rigid"
-"""
-
 
 UNITS = """
 case = "seed_stack_plateau"
@@ -62,8 +42,8 @@ def written(tmp_path):
 
 
 @pytest.fixture
-def base(written):
-    return read_case(CASE, folder=written)
+def base(sweep_of):
+    return sweep_of('motion.file = ["a_h.csv", "b_h.csv"]\n').base
 
 
 def test_the_motions_are_read_as_the_case_takes_them(base):
