@@ -92,9 +92,6 @@ class TestFreeRocking:
         assert np.array_equal(history["analytic_rotation_rad"], columns["analytic_rotation_rad"])
         kept = json.loads((tmp_path / "r" / "run.json").read_text())["rigid_check"]
         assert kept["meaningful"] is True
-        page = (tmp_path / "r" / "summary.txt").read_text()
-        for words in ("rigid check, first impact", "(block 0.7007 s)", "a fair comparison"):
-            assert words in page
 
 
 DRIVEN = ("solver.model=rigid", "solver.duration_s=8", "container.section=solid")

@@ -25,12 +25,6 @@ def request(tmp_path, *changes: tuple[str, str]) -> SiteRequest:
     return load_site(place)
 
 
-def test_the_present_german_hazard_is_given_by_the_plateau_on_rock():
-    asked = load_site("cologne")
-    assert asked.action.horizontal(np.array([0.1]))[0] == pytest.approx(1.7144, rel=1e-4)  # S_aP,R
-    assert (asked.building.storeys, asked.building.kind) == (4, "shear")
-
-
 def test_topography_multiplies_the_action(tmp_path):
     flat, ridge = (
         request(tmp_path, ("= 1.6", f"= 1.6\ntopographic_factor = {factor}")).action for factor in (1.0, 1.4)

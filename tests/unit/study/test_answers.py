@@ -8,7 +8,7 @@ import pytest
 from study_words import KINDS, MU, PEAK, WIDTH, G, ensemble_of, over
 
 from fem.run.sureness import changes_of, least_width, values_to_try
-from fem.study.answers import Answer, Trial, answer_axis, answer_of, answers_csv, is_rising, sweep_answer
+from fem.study.answers import Answer, Trial, answer_axis, answer_of, answers_csv, sweep_answer
 from fem.study.axes import Axis
 from fem.study.sweep_table import BAND, FOUND, open_sweep
 
@@ -16,11 +16,6 @@ from fem.study.sweep_table import BAND, FOUND, open_sweep
 def line(values, kinds, *, number=0, slip=None):
     """Trials of one line, a letter each."""
     return [Trial(value, number, KINDS[kind], slip, None) for value, kind in zip(values, kinds, strict=True)]
-
-
-@pytest.mark.parametrize(("kinds", "rising"), [("oos", False), ("sso", True), ("ooo", True), ("sos", True)])
-def test_the_safe_side_of_another_key_is_what_its_ends_show(kinds, rising):
-    assert is_rising(MU, line(MU.values, kinds)) is rising
 
 
 def test_several_lines_stand_where_all_of_them_do():
