@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from floors import integrated
 
 from fem.records.processing import Processing, baseline_change, motion_of, processed
 from fem.records.record import Component
@@ -24,15 +24,7 @@ def made(values=VALUES, times=TIMES, quantity="acceleration", **options):
 
 def ends_of(found):
     """Displacement and velocity at the end, by an independent integration from rest."""
-    a, state = found.values, np.zeros(2)
-    for i in range(a.size - 1):
-        span = (found.times[i], found.times[i + 1])
-
-        def rates(t, y):
-            return [y[1], np.interp(t, found.times, a)]
-
-        state = solve_ivp(rates, span, state, rtol=1e-12, atol=1e-14, method="DOP853").y[:, -1]
-    return state
+    return integrated(found.times, found.values)
 
 
 def test_mean_ends_at_rest():
