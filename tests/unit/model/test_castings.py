@@ -62,14 +62,12 @@ def test_the_stress_beyond_the_castings_does_not_depend_on_the_mesh():
 @pytest.mark.parametrize("joints", ["", "_two_loose"])
 def test_a_container_rocks_about_castings_that_stand_inside_its_sides(joints):
     inset = 0.1
-    model = build_model(
-        fem.load_case(f"iso_20ft{joints}", [f"support.casting_m=[0.162, 0.178, {inset}]", "floor.kind=rigid"])
-    )
+    keys = [f"support.casting_m=[0.162, 0.178, {inset}]", "floor.kind=rigid"]
+    model = build_model(fem.load_case(f"iso_20ft{joints}", keys))
     width = 2.438 - 2.0 * inset
     assert np.ptp(model.run.old.point[:2, 0]) == pytest.approx(width, rel=1e-6)
-    assert model.static.slenderness_angle == pytest.approx(
-        math.atan(0.5 * width / model.container.mesh.centroid[1]), rel=1e-9
-    )
+    angle = math.atan(0.5 * width / model.container.mesh.centroid[1])
+    assert model.static.slenderness_angle == pytest.approx(angle, rel=1e-9)
 
 
 @pytest.mark.parametrize("length", [0.05, 0.2, 0.4])

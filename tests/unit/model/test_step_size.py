@@ -48,9 +48,8 @@ def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
 
 def test_the_faster_vertical_motion_sets_the_step():
     upward = {"vertical.kind": "harmonic", "vertical.amplitude_m": 1e-3, "vertical.frequency_Hz": 10.0}
-    assert build_model(rigid().with_values(upward)).run.problem.control.largest_step == pytest.approx(
-        0.02 * 0.1
-    )
+    control = build_model(rigid().with_values(upward)).run.problem.control
+    assert control.largest_step == pytest.approx(0.02 * 0.1)
     with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.01 s"):
         build_model(rigid(solver__step_s=0.02).with_values(upward))
 
@@ -81,9 +80,8 @@ def test_a_loose_tolerance_saves_steps_of_a_rigid_container_and_keeps_its_motion
         assert coarse.run.clock[0].steps < 0.75 * model.run.clock[0].steps
         rotation = model.run.track[0].max_rotation
         assert coarse.run.track[0].max_rotation == pytest.approx(rotation, rel=0.01)
-        assert not build_model(
-            rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
-        ).run.problem.control.eager
+        elastic = rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
+        assert not build_model(elastic).run.problem.control.eager
 
 
 def test_eager_steps_on_a_record_are_longer_and_keep_its_motion():

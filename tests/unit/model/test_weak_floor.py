@@ -1,4 +1,4 @@
-"""On a weak floor a container turns inside the edge of what touches: all that follows from the width follows it.
+"""Uplift follows what bears and where the mass is: on a weak floor a container turns inside the edge of what touches.
 
 By hand: the stack weighs W = 98.1 kN and stands on castings of c = 0.1 m; the floor is plastic under c W/F of them.
 """
@@ -11,6 +11,7 @@ from runs import pulse
 
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
+from fem.model.container import changed_container, discretise
 from fem.model.model import build_model
 from fem.run.simulation import run_without_history
 
@@ -111,3 +112,43 @@ def test_a_fall_before_the_floor_is_destroyed_is_a_fall(peak, outcome):
     assert error is None and verdict.outcome == outcome
     expected = simulate_rocking(block(1.5), one_sine_pulse(peak=peak, duration=1.0), duration=20.0)
     assert (expected.largest_rotation > 1.5) == (outcome == "overturned")
+
+
+RIGID = {"solver.model": "rigid", "floor.kind": "rigid", "contact.mu_static": 2.0, "output.fields_s": 0.0}
+WEAK_FLOOR = {
+    "floor.kind": "slab",
+    "floor.preset": "concrete C25/30",
+    "floor.bearing_strength_Pa": 5e6,
+    "floor.corner_patch_m": [0.1, 0.25],
+}
+#: half the width over the height of the mass centre, of the stack
+SLENDERNESS = 0.55 / 2.0
+
+
+def rocks(values: dict, share: float, toward: float) -> bool:
+    """Whether the stack rocks under a pulse of a share of the uplift acceleration of such a block."""
+    pushed = pulse(share * 9.81 * toward, 0.3) | {"solver.duration_s": 0.3}
+    case = named_case("seed_stack_plateau", RIGID | pushed | values)
+    own = case.with_values({"container.eccentricity_m": 0.0, "container.centroid_m": 0.5})
+    model = build_model(case, changed_container(case, discretise(own), own))
+    verdict, error = run_without_history(model, None)
+    assert error is None
+    return verdict.rotation_ratio > 0.01
+
+
+@pytest.mark.parametrize(
+    ("values", "slenderness"),
+    [
+        ({}, SLENDERNESS),
+        ({"support.effective_width": 0.9}, 0.9 * SLENDERNESS),
+        # a floor that accelerates to the right turns it about its left corner, which is farther away
+        ({"container.eccentricity_m": 0.05}, (0.55 + 0.05) / 2.0),
+        ({"container.eccentricity_m": -0.05}, (0.55 - 0.05) / 2.0),
+        ({"container.centroid_m": 0.55}, 0.55 / 2.05),
+        # the floor bears 125 kN under a corner and the stack weighs 98.1: plastic under 78.5 of 100 mm, from the edge
+        (WEAK_FLOOR, (0.55 - 0.5 * 0.1 * 98.1 / 125.0) / 2.0),
+    ],
+)
+def test_uplift_follows_the_width_that_bears_and_the_mass_centre(values, slenderness):
+    assert not rocks(values, 0.99, slenderness)
+    assert rocks(values, 1.06, slenderness)

@@ -139,9 +139,8 @@ class TestForce:
             (folder / name).write_text("mine")
 
     def test_it_lists_them_and_deletes_nothing(self, folder):
-        with pytest.raises(
-            FolderError, match=r"--force deletes files there: history\.csv, figures/a\.svg; delete"
-        ):
+        words = r"--force deletes files there: history\.csv, figures/a\.svg; delete"
+        with pytest.raises(FolderError, match=words):
             begun(folder, force=True)
         assert (folder / "history.csv").exists() and not (folder / "run.json").exists()
 
@@ -168,9 +167,8 @@ class TestReading:
     @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
     def test_a_pipe_does_not_block(self, folder, kind):
         os.mkfifo(folder / kind.mark)
-        with pytest.raises(
-            FolderError, match=r"cannot be read \(is a device or a pipe, not a regular file\)"
-        ):
+        words = r"cannot be read \(is a device or a pipe, not a regular file\)"
+        with pytest.raises(FolderError, match=words):
             read_result(folder / kind.mark, kind)
         (folder / kind.mark).unlink()
         (folder / kind.mark).symlink_to("/dev/zero")

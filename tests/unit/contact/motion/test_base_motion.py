@@ -21,9 +21,8 @@ PERIOD = 2.0 * math.pi / OMEGA
 
 
 def tapered(**changes) -> HarmonicMotion:
-    return HarmonicMotion(
-        **{"amplitude": 0.05, "angular_frequency": OMEGA, "duration": 20.0, "ramp_cycles": 2.0, **changes}
-    )
+    plain = {"amplitude": 0.05, "angular_frequency": OMEGA, "duration": 20.0, "ramp_cycles": 2.0}
+    return HarmonicMotion(**plain | changes)
 
 
 MOTIONS = {
