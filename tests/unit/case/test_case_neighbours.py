@@ -28,9 +28,8 @@ def test_a_neighbour_is_the_container_but_for_what_is_given():
     assert equal.container == own.container
     assert (other.container.width_m, other.mass) == (2.0, 6000.0)
     assert (own.container.eccentricity_m, other.container.eccentricity_m) == (0.0, 0.0)
-    aside = pushed.with_values(
-        {"container.eccentricity_m": 0.011, "neighbour": [{**BESIDE, "width_m": 2.2}, BESIDE]}
-    )
+    wide = {**BESIDE, "width_m": 2.2}
+    aside = pushed.with_values({"container.eccentricity_m": 0.011, "neighbour": [wide, BESIDE]})
     shares = [one.container.eccentricity_m / one.container.width_m for one in aside.row]
     assert shares == pytest.approx([0.011 / pushed.container.width_m] * 3)
     assert other.container.height_m == own.container.height_m
@@ -66,9 +65,8 @@ def test_no_container_of_a_row_gains_at_an_impact_but_by_its_own_case():
 
 
 def test_a_mass_beside_the_axis_needs_two_columns_in_every_container_of_a_row():
-    wide = RIGID.with_values(
-        {"container.width_m": 4.0, "container.wall_m": None, "solver.element_size_m": 1.0}
-    )
+    size = {"container.width_m": 4.0, "container.wall_m": None, "solver.element_size_m": 1.0}
+    wide = RIGID.with_values(size)
     narrow = wide.with_values({"neighbour": [{**BESIDE, "width_m": 0.5}]})
     assert "container.eccentricity_m" in {one.key for one in ranges_of(wide, 1e9)}
     assert "container.eccentricity_m" not in {one.key for one in ranges_of(narrow, 1e9)}

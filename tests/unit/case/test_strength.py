@@ -38,9 +38,8 @@ def test_the_peak_of_a_record_is_what_it_is_scaled_to_and_the_pair_keeps_its_rat
     assert peaks(scaled) == pytest.approx((4.5, 3.0))
     assert scaled.overrides[-1] == f"{PEAK}=4.5"  # as it was asked for
     assert peaks(make(record, {PEAK: 4.5, "vertical.scale": -0.5})) == pytest.approx((4.5, 1.5))
-    assert peaks(make(record, {PEAK: 4.5, "vertical.peak_acceleration_m_s2": 1.0})) == pytest.approx(
-        (4.5, 1.0)
-    )
+    both = make(record, {PEAK: 4.5, "vertical.peak_acceleration_m_s2": 1.0})
+    assert peaks(both) == pytest.approx((4.5, 1.0))
 
 
 def test_it_replaces_a_factor_and_is_replaced_by_one(record):

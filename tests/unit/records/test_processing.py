@@ -40,9 +40,8 @@ def test_mean_is_that_over_time_not_over_samples():
 
 @pytest.mark.parametrize("baseline", ["linear", "zero-end"])
 def test_linear_and_zero_end_bring_the_floor_to_rest_where_it_began(baseline):
-    assert ends_of(made(VALUES + 0.3 - 0.2 * TIMES, baseline=baseline)) == pytest.approx(
-        [0.0, 0.0], abs=1e-12
-    )
+    ends = ends_of(made(VALUES + 0.3 - 0.2 * TIMES, baseline=baseline))
+    assert ends == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 def test_linear_is_the_least_squares_line():

@@ -168,9 +168,8 @@ class TestTheAnimation:
         assert all(b > a for a, b in zip(before, after, strict=True))
         axes = json.loads(run_page.evaluate("document.querySelector('.cursor').parentElement.dataset.axes"))
         share = (stopped - axes["x"][0]) / (axes["x"][1] - axes["x"][0])
-        assert after[0] == pytest.approx(
-            100.0 * (axes["left"] + share * (axes["right"] - axes["left"])), abs=0.3
-        )
+        place = 100.0 * (axes["left"] + share * (axes["right"] - axes["left"]))
+        assert after[0] == pytest.approx(place, abs=0.3)
 
     def test_slider_and_keys_go_through_time(self, run_page):
         run_page.evaluate("document.getElementById('time').focus()")
@@ -182,9 +181,8 @@ class TestTheAnimation:
         assert run_page.evaluate(CLOCK) == pytest.approx(0.6)
         run_page.press("End", 35)
         assert run_page.evaluate(CLOCK) == pytest.approx(2.0)
-        assert "rotation" in run_page.evaluate(
-            "document.getElementById('time').getAttribute('aria-valuetext')"
-        )
+        said = "document.getElementById('time').getAttribute('aria-valuetext')"
+        assert "rotation" in run_page.evaluate(said)
         run_page.press(" ", 32)  # from the end it plays again from the start
         run_page.wait(f"{CLOCK} < 1.9 && {CLOCK} > 0")
         run_page.press("k", 75)

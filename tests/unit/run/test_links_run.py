@@ -108,9 +108,8 @@ def unsure_of(*names: str, **keys) -> Case:
 
 
 def test_every_input_of_links_is_varied_alone_and_with_the_others():
-    case = unsure_of(*LINKS, stop=KERBS, tie=TIES, neighbour=[BESIDE]).with_values(
-        {"solver.duration_s": 0.5, "uncertainty.draws": 4}
-    )
+    brief = {"solver.duration_s": 0.5, "uncertainty.draws": 4}
+    case = unsure_of(*LINKS, stop=KERBS, tie=TIES, neighbour=[BESIDE], **brief)
     band = fem.compute(case, band=True, margin=False).verdict.band
     keys = {name.replace("_", ".", 1) for name in LINKS}
     alone = {key: set() for key in keys}

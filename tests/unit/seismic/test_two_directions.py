@@ -77,9 +77,8 @@ def test_the_largest_slip_is_that_of_the_worse_sign(motions):
 
 def test_a_body_that_slides_when_the_motion_ends_is_followed_until_it_stops():
     times = np.arange(0.0, 0.2 + 1e-9, 0.01)
-    motion = GroundMotion(
-        name="push", step=0.01, horizontal=np.full(times.size, 6.0), second=np.full(times.size, 2.0)
-    )
+    along, across = np.full(times.size, 6.0), np.full(times.size, 2.0)
+    motion = GroundMotion(name="push", step=0.01, horizontal=along, second=across)
     (found,) = largest_slips([motion], [(0.3, 0.3)])[0.3, 0.3]
     speed = (math.hypot(6.0, 2.0) - 0.3 * 9.81) * 0.2
     assert found == pytest.approx(0.1 * speed + speed**2 / (2.0 * 0.3 * 9.81), rel=1e-6)

@@ -88,9 +88,8 @@ def folder(tmp_path):
 
 def test_each_line_has_a_row_with_what_was_tried_between_its_cells(folder):
     answer = sweep_answer(open_sweep(folder), folder)
-    assert (
-        "slid up to 80 mm" in answer.sentence and "(slip there 64 mm, with mu static 0.5)" in answer.sentence
-    )
+    assert "slid up to 80 mm" in answer.sentence
+    assert "(slip there 64 mm, with mu static 0.5)" in answer.sentence
     first, second = csv.DictReader(answers_csv(answer).splitlines())
     assert (first[MU.key], float(first["stood_to"]), first["overturned_from"]) == ("0.3", 0.6 * G, "")
     assert float(second["stood_to"]) == 0.42 * G

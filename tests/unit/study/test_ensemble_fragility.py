@@ -21,9 +21,8 @@ def test_the_fit_has_the_largest_likelihood():
         z = (np.log(STRENGTHS) - parameters[0]) / np.exp(parameters[1])
         return -np.sum(counts * log_ndtr(z) + (200.0 - counts) * log_ndtr(-z))
 
-    best = minimize(
-        loss, [np.log(4.0), np.log(0.5)], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-10}
-    )
+    options = {"xatol": 1e-9, "fatol": 1e-10}
+    best = minimize(loss, [np.log(4.0), np.log(0.5)], method="Nelder-Mead", options=options)
     found = fit_lognormal(STRENGTHS, counts, DRAWS)
     assert np.log(found.median) == pytest.approx(best.x[0], abs=1e-6)
     assert np.log(found.deviation) == pytest.approx(best.x[1], abs=1e-5)

@@ -226,9 +226,8 @@ TOO_LIGHT = BOX.replace({"container.wall_m": 0.05, "container.mass_kg": 900.0})
 
 
 def test_all_cases_are_looked_at_before_the_first_is_computed(monkeypatch):
-    monkeypatch.setattr(
-        many, "compute_on", lambda *_: pytest.fail("computed before the last case was looked at")
-    )
+    words = "computed before the last case was looked at"
+    monkeypatch.setattr(many, "compute_on", lambda *_: pytest.fail(words))
     with pytest.raises(ValueError, match="walls and posts of one box weigh") as refused:
         fem.compute_many([BOX, TOO_LIGHT], 1, band=False)
     assert refused.value.__notes__ == ["case 2 of 2 of compute_many"]

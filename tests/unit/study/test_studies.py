@@ -123,9 +123,8 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
 @STUDIES
 def test_a_study_whose_folder_is_removed_ends_in_a_sentence(tmp_path, study, mark, log):
     folder = tmp_path / "out"
-    with pytest.raises(
-        OutputError, match=r"out: the folder was removed during the run; run the command again"
-    ):
+    words = "out: the folder was removed during the run; run the command again"
+    with pytest.raises(OutputError, match=words):
         study(tmp_path)(folder, reporter=Removing(folder))
     assert not folder.exists()
 

@@ -49,10 +49,8 @@ def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
             found[key_of(copy.change.values)] = run_without_history(model, None)[0]
     assert {"contact.mu_static", "container.eccentricity_m"} <= {key for some in found for key, _ in some}
     for key, verdict in found.items():
-        assert (verdict.outcome, verdict.rotation_ratio) == (
-            members[key].outcome,
-            members[key].rotation_ratio,
-        )
+        assert verdict.outcome == members[key].outcome
+        assert verdict.rotation_ratio == members[key].rotation_ratio
 
 
 @pytest.mark.parametrize(
@@ -101,9 +99,8 @@ def test_a_cell_is_as_sure_as_its_copies_are_and_what_decides_it_turns_it(sweep_
         decided = table["decided_by"][cell].split()
         assert bool(decided) == (expected != "sure")
         if expected == "unsure":
-            turned = [
-                row["change"] for row in copies if (row["outcome"] == "overturned") != (own == "overturned")
-            ]
+            falls = own == "overturned"
+            turned = [row["change"] for row in copies if (row["outcome"] == "overturned") != falls]
             assert all(f"{key}=" in " ".join(turned) for key in decided)
     assert np.array_equal(table["sure"] == "unsure", table["unsure"] == 1.0)
     assert sum(info["sure"].values()) == sweep.count
@@ -151,9 +148,8 @@ def test_the_band_is_as_wide_as_its_stretch_of_cells():
 
 
 def test_each_member_changes_one_thing():
-    case = load_case(
-        "seed_stack_plateau", ["floor.kind=rigid", "contact.damping_ratio=1.0", "motion.phase_rad=6.2"]
-    )
+    keys = ["floor.kind=rigid", "contact.damping_ratio=1.0", "motion.phase_rad=6.2"]
+    case = load_case("seed_stack_plateau", keys)
     found = members(case)
     peak = case.motion.peak_acceleration_m_s2 or case.motion.amplitude * case.motion.angular_frequency**2
     changed = [case.with_values(member) for member in found]

@@ -83,9 +83,8 @@ def written(folder, text, case):
 
 @READERS
 def test_a_file_beside_it_wins_over_a_shipped_case(tmp_path, read, text):
-    (tmp_path / "seed_box").write_text(
-        CASES.text("seed_box").replace("boxes = 1 ", "boxes = 2 "), encoding="utf-8"
-    )
+    pair = CASES.text("seed_box").replace("boxes = 1 ", "boxes = 2 ")
+    (tmp_path / "seed_box").write_text(pair, encoding="utf-8")
     assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 2
     (tmp_path / "seed_box").unlink()
     assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 1
