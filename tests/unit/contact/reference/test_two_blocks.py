@@ -4,14 +4,20 @@ import math
 
 import numpy as np
 import pytest
+from floors import sine_floor, still_floor
 from two_blocks import (
     Footing,
+    Pattern,
     StackedBlock,
     TwoBlockStack,
     contact_normals,
+    energy,
+    simulate_two_blocks,
 )
 
 from contact.reference.floor_acceleration import Acceleration
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
 
 G = 9.81
 BOX = StackedBlock.homogeneous(width=1.1, height=2.0, mass=5000.0)
@@ -99,3 +105,30 @@ def test_the_equations_of_every_pattern_are_those_of_newton_and_euler(stack, bas
     if joint:
         unused = normal.joint_left if joint == 1 else normal.joint_right
         assert unused == pytest.approx(0.0, abs=1e-9 * stack.mass * G)
+
+
+@pytest.mark.parametrize("stack", STACKS)
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.1, 0.0), (0.05, 0.0, -0.04, 0.0), (0.04, 0.1, 0.12, 0.3)])
+def test_energy_is_kept_between_impacts_and_never_gained_at_them(stack, start):
+    motion = simulate_two_blocks(stack, still_floor(), duration=1.0, state=start)
+    assert len(motion.impacts) >= 2
+    first = energy(stack, motion.footings[0], np.array(start))
+    last = first
+    for piece in motion.pieces:
+        footing = motion.footings[piece.regime]
+        times = np.linspace(piece.start, piece.end, 5)
+        found = [energy(stack, footing, piece.interpolant(t)) for t in times]
+        assert np.ptp(found) < 1e-9 * first
+        assert found[0] < last + 1e-9 * first
+        last = found[-1]
+
+
+def test_a_stack_whose_joint_stays_closed_is_one_block():
+    whole = RigidBlock.homogeneous(width=1.1, height=4.0)
+    floor = sine_floor(amplitude=4.0 / 6.928**2, angular_frequency=6.928)
+    one = simulate_rocking(whole, floor, duration=6.0)
+    two = simulate_two_blocks(EQUAL, floor, duration=6.0)
+    assert two.patterns == (Pattern.AS_ONE,)
+    assert two.impacts == pytest.approx([hit.time for hit in one.impacts], abs=1e-9)
+    times = np.linspace(0.0, 6.0, 50)
+    assert two.at(times)[:, 2] == pytest.approx(one.at(times)[0], abs=1e-9)
