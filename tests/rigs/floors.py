@@ -3,7 +3,24 @@
 import math
 from collections.abc import Callable
 
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from contact.arrays import FloatArray
 from contact.reference.floor_acceleration import FloorAcceleration
+
+
+def integrated(times: FloatArray, accelerations: FloatArray, until: float = math.inf) -> FloatArray:
+    """Displacement [m] and velocity [m/s] at `until` [s] of a floor from rest, integrated knot by knot (n,)."""
+
+    def rates(time: float, state: FloatArray) -> list[float]:
+        return [state[1], float(np.interp(time, times, accelerations))]
+
+    state = np.zeros(2)
+    for low, high in zip(times[:-1], np.minimum(times[1:], until), strict=True):
+        if high > low:
+            state = solve_ivp(rates, (low, high), state, rtol=1e-12, atol=1e-14, method="DOP853").y[:, -1]
+    return state
 
 
 def still_floor() -> FloorAcceleration:

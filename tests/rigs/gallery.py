@@ -11,13 +11,12 @@ from pathlib import Path
 
 import pytest
 from filelock import FileLock
-from small_sweep import SMALL
+from small_sweep import sweep_in
 
 from fem.case.case import load_case
 from fem.results.reader import OpenedRun, open_run
 from fem.run.run import RunOptions, run_case
 from fem.runtime.progress import Reporter
-from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep
 
 #: a title that must stay text wherever it is shown
@@ -47,10 +46,9 @@ RUNS: dict[str, tuple[str, tuple[str, ...], dict[str, bool]]] = {
 
 def small_sweep(folder: Path) -> None:
     """The sweep of `small_sweep`, without maps."""
-    (folder.parent / "small.toml").write_text(SMALL, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("fem.study.sweep.draw_maps", lambda *_: [])
-        run_sweep(load_sweep(folder.parent / "small.toml"), folder, jobs=1)
+        run_sweep(sweep_in(folder.parent), folder, jobs=1)
 
 
 MADE: dict[str, Callable[[Path], object]] = {"sweep": small_sweep}

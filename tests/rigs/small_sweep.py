@@ -1,5 +1,10 @@
-"""A sweep of ten cells that several tests compute, and its table for comparison."""
+"""A sweep of ten cells that several tests compute, other sweeps from their texts, and tables for comparison."""
 
+import csv
+from pathlib import Path
+
+from fem.study.design import Sweep
+from fem.study.file import load_sweep
 from fem.study.table import fields_of
 
 SMALL = """
@@ -15,6 +20,18 @@ case = "seed_stack_plateau"
 [derived]
 "contact.mu_kinetic" = "0.5 * contact.mu_static"
 """
+
+
+def sweep_in(folder: Path, text: str = SMALL, name: str = "small") -> Sweep:
+    """The sweep of a text, whose file is written to a folder."""
+    path = folder / f"{name}.toml"
+    path.write_text(text, encoding="utf-8")
+    return load_sweep(path)
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """The rows of a table with a header."""
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
 def rows_without_wall(folder, name="table.csv"):

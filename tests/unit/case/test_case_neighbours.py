@@ -3,6 +3,7 @@
 import pickle
 
 import pytest
+from interrupted_runs import stored_run
 
 import fem
 from fem.case.case import CaseError, case_hash, load_case, to_toml
@@ -11,7 +12,6 @@ from fem.case.tables.unknown_inputs import ranges_of
 from fem.cli.check import preview_of
 from fem.model.container import discretise
 from fem.model.model import build_model
-from fem.run.run import RunOptions, run_case
 from fem.study.containers import container_key
 from fem.study.design import CaseMaker
 from mesh.errors import MeshError
@@ -28,9 +28,8 @@ def test_a_neighbour_is_the_container_but_for_what_is_given():
     assert equal.container == own.container
     assert (other.container.width_m, other.mass) == (2.0, 6000.0)
     assert (own.container.eccentricity_m, other.container.eccentricity_m) == (0.0, 0.0)
-    aside = pushed.with_values(
-        {"container.eccentricity_m": 0.011, "neighbour": [{**BESIDE, "width_m": 2.2}, BESIDE]}
-    )
+    wide = {**BESIDE, "width_m": 2.2}
+    aside = pushed.with_values({"container.eccentricity_m": 0.011, "neighbour": [wide, BESIDE]})
     shares = [one.container.eccentricity_m / one.container.width_m for one in aside.row]
     assert shares == pytest.approx([0.011 / pushed.container.width_m] * 3)
     assert other.container.height_m == own.container.height_m
@@ -66,9 +65,8 @@ def test_no_container_of_a_row_gains_at_an_impact_but_by_its_own_case():
 
 
 def test_a_mass_beside_the_axis_needs_two_columns_in_every_container_of_a_row():
-    wide = RIGID.with_values(
-        {"container.width_m": 4.0, "container.wall_m": None, "solver.element_size_m": 1.0}
-    )
+    size = {"container.width_m": 4.0, "container.wall_m": None, "solver.element_size_m": 1.0}
+    wide = RIGID.with_values(size)
     narrow = wide.with_values({"neighbour": [{**BESIDE, "width_m": 0.5}]})
     assert "container.eccentricity_m" in {one.key for one in ranges_of(wide, 1e9)}
     assert "container.eccentricity_m" not in {one.key for one in ranges_of(narrow, 1e9)}
@@ -115,6 +113,7 @@ mu_static = [0.2, 0.3]
 kind = "none"
 """
 SLAB = '[floor]\npreset = "concrete"\ncorner_patch_m = [0.1, 0.2]\n'
+STOP = '[[stop]]\nside = "right"\nheight_m = 3.0\ngap_m = 0.1\nstiffness_N_m = 1e8\n'
 
 
 def written(folder, row=ROW, half=HALF):
@@ -139,12 +138,7 @@ def test_the_folder_of_results_repeats_a_row_to_the_same_bits_on_any_floor(tmp_p
     row = written(tmp_path / "asked")
     base = load_case(written(tmp_path / "slab", ROW + SLAB, HALF + SLAB))
     for number, case in enumerate((load_case(row), base.with_values({"floor.slope_percent": 1.0}))):
-        first = run_case(
-            case,
-            case_text=case.text,
-            folder=tmp_path / f"a{number}",
-            options=RunOptions(band=False, margin=False),
-        )
+        first = stored_run(case, tmp_path / f"a{number}", band=False, margin=False)
         again = load_case(first.folder / "resolved.toml")
         assert case_hash(again) == first.typed_result.case_hash and to_toml(again) == to_toml(first.case)
         run = fem.compute(again, band=False, margin=False)
@@ -173,11 +167,7 @@ def test_the_file_is_read_once_and_is_part_of_the_hash(tmp_path):
         (ROW, ROW, r"has \[\[neighbour\]\] of its own"),
         (ROW, HALF.replace("= 0.9", "= 900"), r"half.toml: \[container\] width_m .*millimetres"),
         (ROW, HALF + '[support]\nkind = "flat"\n', r'1, as a container: .*kind must be "corners"'),
-        (
-            ROW + '[[stop]]\nside = "right"\nheight_m = 3.0\ngap_m = 0.1\nstiffness_N_m = 1e8\n',
-            HALF,
-            r"\[stop\] height_m must be at most the height of neighbour 1, 2 m, got 3 m",
-        ),
+        (ROW + STOP, HALF, r"\[stop\] height_m must be at most the height of neighbour 1, 2 m, got 3 m"),
     ],
 )
 def test_a_case_that_cannot_stand_there_is_refused_with_its_reason(tmp_path, row, half, reason):

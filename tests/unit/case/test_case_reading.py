@@ -3,26 +3,7 @@
 import pytest
 from cases import LEAST
 
-from fem.case.case import CaseError, load_case, read_case
-
-PEAK, HERTZ = 0.05 * 6.928**2, 6.928 / 6.283185307179586
-
-
-@pytest.mark.parametrize(
-    "pair",
-    [
-        "amplitude_m = 0.05\nangular_frequency_rad_s = 6.928",
-        f"amplitude_m = 0.05\nfrequency_Hz = {HERTZ!r}",
-        f"peak_acceleration_m_s2 = {PEAK!r}\nangular_frequency_rad_s = 6.928",
-        f"peak_acceleration_m_s2 = {PEAK!r}\nfrequency_Hz = {HERTZ!r}",
-        f"peak_acceleration_m_s2 = {PEAK!r}\namplitude_m = 0.05",
-    ],
-)
-def test_harmonic_motion_follows_from_any_two(pair):
-    case = read_case(LEAST.replace('"none"', f'"harmonic"\n{pair}'))
-    assert case.motion.amplitude == pytest.approx(0.05, rel=1e-12)
-    assert case.motion.angular_frequency == pytest.approx(6.928, rel=1e-12)
-    assert case.motion.nominal_peak == pytest.approx(PEAK, rel=1e-12)
+from fem.case.case import CaseError, load_case
 
 
 def test_mark_and_line_ends_of_windows_are_read(tmp_path):

@@ -88,11 +88,8 @@ def test_a_channel_is_no_part_of_the_name(tmp_path):
 def test_files_of_one_name_from_two_folders_are_refused(tmp_path):
     for folder in ("a", "b"):
         recorded(tmp_path / folder / "floor.csv")
-    case = load_case(
-        written(tmp_path / "case", "floor.csv"),
-        ["motion.file=../a/floor.csv", "vertical.kind=table", "vertical.file=../b/floor.csv"],
-    )
-    with pytest.raises(
-        CaseError, match=r"\[vertical\] file has the name of the file of motion.file, 'floor.csv'"
-    ):
+    names = ["motion.file=../a/floor.csv", "vertical.kind=table", "vertical.file=../b/floor.csv"]
+    case = load_case(written(tmp_path / "case", "floor.csv"), names)
+    words = r"\[vertical\] file has the name of the file of motion.file, 'floor.csv'"
+    with pytest.raises(CaseError, match=words):
         assert case.files

@@ -116,9 +116,8 @@ def test_components_of_one_recording_are_cut_to_what_they_share():
 
 def test_components_that_were_not_sampled_together_are_refused(folder):
     (folder / "brief.at2").write_text(files.peer(THIRD[:300] / G, "UP"))
-    (folder / "late.csv").write_text(
-        "t [s],UP [m/s2]\n" + "".join(f"{0.0123 + STEP * k:.4f},{v:.6f}\n" for k, v in enumerate(THIRD))
-    )
+    rows = "".join(f"{0.0123 + STEP * k:.4f},{v:.6f}\n" for k, v in enumerate(THIRD))
+    (folder / "late.csv").write_text(f"t [s],UP [m/s2]\n{rows}")
     for name, words in (("brief.at2", "801 and 300 samples"), ("late.csv", r"up to 0\.0123 s apart in time")):
         with pytest.raises(CaseError, match=f"do not belong together: .*{words}"):
             moved("h.at2", "vertical.kind=table", f"vertical.file={name}", table="vertical")
@@ -128,10 +127,9 @@ def test_components_that_were_not_sampled_together_are_refused(folder):
 def test_a_gap_is_refused_with_its_times_and_bridged_where_that_is_asked(folder, missing):
     lines = files.columns([FIRST, THIRD]).splitlines(keepends=True)
     (folder / "gap.csv").write_text("".join(lines[:200] + lines[200 + missing :]))
+    words = rf"gap.csv: no samples between 0.995 and {1 + STEP * missing:g} s"
     for table in ("motion", "vertical"):
-        with pytest.raises(
-            CaseError, match=rf"\[{table}\] gap.csv: no samples between 0.995 and {1 + STEP * missing:g} s"
-        ):
+        with pytest.raises(CaseError, match=rf"\[{table}\] {words}"):
             moved("gap.csv", "motion.unit=m/s2", table=table)
         found = moved("gap.csv", "motion.unit=m/s2", "motion.gaps=bridge", table=table)
         assert found.times.size == FIRST.size - missing

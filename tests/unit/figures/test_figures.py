@@ -14,7 +14,6 @@ import fem
 import fem.figures.cache
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.case.case import load_case
 from fem.figures import style
 from fem.figures.cache import drawings_of
 from fem.figures.run import FIGURES, figures_of
@@ -26,24 +25,6 @@ from fem.runtime.progress import Reporter
 #: of a run that has all but a recorded motion
 ALL = [name for name in (*FIGURES, "modes") if name != "spectrum"]
 ALWAYS = {*ALL} - {"band", "rigid_check", "joints"}
-AT_REST = ("seed_box", "motion.kind=none", "solver.duration_s=0.5")
-
-
-class Collecting(Reporter):
-    """Collects the messages."""
-
-    def __init__(self):
-        self.messages = []
-
-    def message(self, text):
-        self.messages.append(text)
-
-
-def run_into(folder, name, *changes, reporter=None):
-    case = load_case(name, ["floor.kind=rigid", "solver.model=rigid", "output.fields_s=0", *changes])
-    options = RunOptions(band=False, margin=False)
-    run_case(case, case_text=case.text, folder=folder, options=options, reporter=reporter)
-    return fem.open_run(folder)
 
 
 @pytest.fixture(scope="module")
@@ -140,13 +121,8 @@ def test_a_free_block_returns_from_within_the_curve_of_the_phase_portrait(drawn)
     block = RigidBlock.homogeneous(width=1.1, height=4.0)
     for index in (60, 100, 140):  # of the upper half: falling back, upright, tilted away
         for factor, falls in ((0.98, False), (1.02, True)):
-            motion = simulate_rocking(
-                block,
-                still_floor(),
-                duration=20.0,
-                rotation=abs(tilt[index]),
-                angular_velocity=factor * rate[index],
-            )
+            start = {"rotation": abs(tilt[index]), "angular_velocity": factor * rate[index]}
+            motion = simulate_rocking(block, still_floor(), duration=20.0, **start)
             assert (motion.overturned_at is not None) == falls, (index, factor)
 
 
@@ -188,10 +164,13 @@ def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(fem.figures.cache, "write_figures", full)
-    reporter = Collecting()
-    run = run_into(tmp_path / "r", *AT_REST, reporter=reporter)
+    messages, reporter = [], Reporter()
+    monkeypatch.setattr(reporter, "message", messages.append)
+    keys = ["floor.kind=rigid", "solver.model=rigid", "motion.kind=none", "solver.duration_s=0.5"]
+    case, alone = fem.load_case("seed_box", keys), RunOptions(band=False, margin=False)
+    run = run_case(case, case_text="", folder=tmp_path / "r", options=alone, reporter=reporter)
     assert run.status == "completed"
-    assert "figures were not drawn (OSError: [Errno 28] No space left on device)" in reporter.messages[-1]
+    assert "figures were not drawn (OSError: [Errno 28] No space left on device)" in messages[-1]
 
 
 @pytest.mark.parametrize(

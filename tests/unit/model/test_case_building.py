@@ -36,11 +36,8 @@ def test_a_mesh_file_beside_the_case_takes_the_place_of_the_structured_mesh(tmp_
 
 def test_nodes_of_a_mesh_are_counted_by_order():
     # 1 m x 1 m in elements of 0.5 m: 3 x 3 points, and 5 x 5 nodes of quadratic elements.
-    mesh = build_container(
-        load_case(
-            "seed_box", ["container.section=solid", "solver.element_size_m=0.5", "container.width_m=1.0"]
-        )
-    )
+    keys = ["container.section=solid", "solver.element_size_m=0.5", "container.width_m=1.0"]
+    mesh = build_container(load_case("seed_box", keys))
     assert (node_count(mesh, 1), node_count(mesh, 2)) == (9, 25)
     np.testing.assert_allclose(base_positions(mesh, 1), [-0.5, 0.0, 0.5])
     np.testing.assert_allclose(base_positions(mesh, 2), [-0.5, -0.25, 0.0, 0.25, 0.5])

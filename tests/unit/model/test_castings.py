@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from cases import named_case
+from runs import pulse
 
 import fem
 from contact.reference.rigid_block import RigidBlock
@@ -61,14 +62,12 @@ def test_the_stress_beyond_the_castings_does_not_depend_on_the_mesh():
 @pytest.mark.parametrize("joints", ["", "_two_loose"])
 def test_a_container_rocks_about_castings_that_stand_inside_its_sides(joints):
     inset = 0.1
-    model = build_model(
-        fem.load_case(f"iso_20ft{joints}", [f"support.casting_m=[0.162, 0.178, {inset}]", "floor.kind=rigid"])
-    )
+    keys = [f"support.casting_m=[0.162, 0.178, {inset}]", "floor.kind=rigid"]
+    model = build_model(fem.load_case(f"iso_20ft{joints}", keys))
     width = 2.438 - 2.0 * inset
     assert np.ptp(model.run.old.point[:2, 0]) == pytest.approx(width, rel=1e-6)
-    assert model.static.slenderness_angle == pytest.approx(
-        math.atan(0.5 * width / model.container.mesh.centroid[1]), rel=1e-9
-    )
+    angle = math.atan(0.5 * width / model.container.mesh.centroid[1])
+    assert model.static.slenderness_angle == pytest.approx(angle, rel=1e-9)
 
 
 @pytest.mark.parametrize("length", [0.05, 0.2, 0.4])
@@ -99,10 +98,9 @@ def test_feet_are_at_rest_on_the_points_that_are_least_crushed():
     """The outer points, which rocking crushes most, bear nothing then: the run ends, and does not wait for them."""
     solid = {"container.section": "solid", "container.post_m": None, "container.corner_post_N": None}
     feet = {"support.kind": "feet", "support.foot_m": 0.2, "support.casting_m": None}
-    pulse = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": 3.6}
     soft = {"contact.mu_static": 2.0, "contact.mu_kinetic": 2.0, "floor.bearing_strength_Pa": 7e6}
     solver = {"solver.model": "rigid", "solver.duration_s": "auto", "output.fields_s": 0.0}
-    keys = {f"motion.{key}": value for key, value in pulse.items()} | solid | feet | soft | solver
+    keys = pulse(3.6, 1.0, "sine") | solid | feet | soft | solver
     model = build_model(named_case("stack_on_concrete", keys))
     _, error = run_without_history(model, None)
     assert error is None

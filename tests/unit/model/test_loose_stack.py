@@ -47,17 +47,13 @@ def test_joints_have_a_dashpot_of_their_own_on_any_floor(floor):
     for values, ratio in (({}, 2.0), ({"joints.damping_ratio": 0.5, "contact.damping_ratio": 0.1}, 0.5)):
         contact = build_model(loose(model="rigid", more=floor).with_values(values)).equilibrium.contact
         mass = contact.force_scale / 9.81
-        assert contact.relaxation_time[2:] == pytest.approx(
-            2.0 * ratio * np.sqrt(mass / contact.normal_stiffness[2])
-        )
+        time = 2.0 * ratio * np.sqrt(mass / contact.normal_stiffness[2])
+        assert contact.relaxation_time[2:] == pytest.approx(time)
 
 
 def test_joints_have_their_own_friction_and_the_springs_of_the_face_they_share():
-    built = build_model(
-        loose(
-            UNEQUAL, model="rigid", more="[joints]\nmu_static = 0.3\nmu_kinetic = 0.2\nweakening_m = 1e-3\n"
-        )
-    )
+    rough = "[joints]\nmu_static = 0.3\nmu_kinetic = 0.2\nweakening_m = 1e-3\n"
+    built = build_model(loose(UNEQUAL, model="rigid", more=rough))
     contact, penalty = built.equilibrium.contact, built.penalty
     assert contact.mu_static.tolist() == [0.4] * 2 + [0.3] * 4
     assert contact.mu_kinetic.tolist() == [0.4] * 2 + [0.2] * 4

@@ -22,11 +22,8 @@ def test_the_largest_stress_is_that_of_all_nodes_in_all_samples(recovery, seed):
     # Amplitudes so spread that bounds leave out some samples, and not spread so much that they leave out all others.
     random = np.random.default_rng(seed)
     count, modes = 40, len(recovery.angular_frequencies)
-    modal = (
-        random.standard_normal((count, modes))
-        * random.uniform(0.5, 1.5, (count, 1))
-        / recovery.angular_frequencies
-    )
+    amplitudes = random.standard_normal((count, modes)) * random.uniform(0.5, 1.5, (count, 1))
+    modal = amplitudes / recovery.angular_frequencies
     positions = np.column_stack([np.zeros((count, 3)), modal])
     each = [recovery.frame(row, np.zeros_like(row)).von_mises[recovery.counted] for row in positions]
     assert recovery.largest_von_mises(positions) == pytest.approx(np.max(each), rel=1e-12)
@@ -35,9 +32,8 @@ def test_the_largest_stress_is_that_of_all_nodes_in_all_samples(recovery, seed):
 def test_of_a_symmetric_container_both_nodes_of_a_pair_are_watched():
     case = load_case("rocking", ["solver.element_size_m=0.25", "solver.order=1"])
     container = build_model(case).container
-    nodes = container.elements.nodes[
-        stressed_nodes(case, container.elements, container.basis, container.nodes)
-    ]
+    stressed = stressed_nodes(case, container.elements, container.basis, container.nodes)
+    nodes = container.elements.nodes[stressed]
     mirrored = nodes * (-1.0, 1.0)
     distance = np.linalg.norm(nodes[:, None] - mirrored[None], axis=2).min(axis=1)
     assert len(nodes) > 4 and distance.max() < 1e-9
@@ -49,9 +45,8 @@ def test_the_stress_of_a_run_is_that_of_its_steps_whatever_is_sampled(changes):
     coarse = ["solver.element_size_m=0.25", "solver.order=1", "solver.duration_s=1.0"]
     found, frames = [], []
     for interval, fields in ((0.005, 0.0), (0.001, 2e-4)):
-        case = load_case(
-            "rocking", [*changes, *coarse, f"output.history_s={interval}", f"output.fields_s={fields}"]
-        )
+        kept = [f"output.history_s={interval}", f"output.fields_s={fields}"]
+        case = load_case("rocking", [*changes, *coarse, *kept])
         model = build_model(case)
         recovery = recovery_of(model)
         recorder = Recorder(

@@ -26,11 +26,8 @@ def shaken(coda: float, again: float = 0.0, **keys: object) -> Case:
     acceleration = 1.5 * lifts * np.sin(np.pi * time / 0.5) * (time < 0.5)
     acceleration += coda * lifts * np.sin(2.0 * np.pi * time) * (time > 1.0) * (time < 7.0)
     acceleration -= again * lifts * np.sin(np.pi * (time - 6.0) / 0.5) * (time > 6.0) * (time < 6.5)
-    return (
-        case_from(BOX)
-        .with_motion(time, acceleration)
-        .with_values({f"output.{k}": v for k, v in keys.items()})
-    )
+    case = case_from(BOX).with_motion(time, acceleration)
+    return case.with_values({f"output.{k}": v for k, v in keys.items()})
 
 
 def test_a_run_that_stops_when_still_moves_as_one_whose_contents_are_followed():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from runs import pulse
 
 import contact.stepping.control
 from contact.stepping.integrator import FAILED
@@ -11,13 +12,7 @@ from fem.model.model import build_model
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate, stepping_failure
 
-PULSE = {
-    "motion.kind": "pulse",
-    "motion.shape": "half-sine",
-    "motion.delay_s": 0.5,
-    "solver.duration_s": 4.0,
-    "output.fields_s": 0.0,
-}
+LATER = {"motion.delay_s": 0.5, "solver.duration_s": 4.0, "output.fields_s": 0.0}
 
 
 def rigid(**changes):
@@ -33,17 +28,16 @@ def finished(case):
 
 def test_a_pulse_of_microseconds_is_met_and_does_not_set_the_step_of_the_whole_run():
     """A pulse of 20 us, 2e5 times shorter than the run."""
-    pulse = 2e-5
-    values = PULSE | {"motion.peak_acceleration_m_s2": 100.0, "motion.pulse_s": pulse}
-    model, ending = finished(rigid().with_values(values))
+    length = 2e-5
+    model, ending = finished(rigid().with_values(LATER | pulse(100.0, length, "half-sine")))
     assert ending.status == "completed", ending.error
     assert model.run.clock[0].steps < 20_000
-    assert float(model.run.floor[0, 1]) == pytest.approx(100.0 * pulse * 2.0 / np.pi, rel=1e-12)
-    assert model.run.clock[0].smallest_step <= pulse / 50.0
+    assert float(model.run.floor[0, 1]) == pytest.approx(100.0 * length * 2.0 / np.pi, rel=1e-12)
+    assert model.run.clock[0].smallest_step <= length / 50.0
 
 
 def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
-    values = PULSE | {"motion.peak_acceleration_m_s2": 50.0, "motion.pulse_s": 0.04}
+    values = LATER | pulse(50.0, 0.04, "half-sine")
     auto, _ = finished(rigid().with_values(values))
     fine, _ = finished(rigid().with_values(values | {"solver.step_s": 0.04 * 0.02}))
     assert auto.run.clock[0].steps < 0.7 * fine.run.clock[0].steps
@@ -54,29 +48,23 @@ def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
 
 def test_the_faster_vertical_motion_sets_the_step():
     upward = {"vertical.kind": "harmonic", "vertical.amplitude_m": 1e-3, "vertical.frequency_Hz": 10.0}
-    assert build_model(rigid().with_values(upward)).run.problem.control.largest_step == pytest.approx(
-        0.02 * 0.1
-    )
+    control = build_model(rigid().with_values(upward)).run.problem.control
+    assert control.largest_step == pytest.approx(0.02 * 0.1)
     with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.01 s"):
         build_model(rigid(solver__step_s=0.02).with_values(upward))
 
 
 def test_steps_end_where_either_motion_jumps():
-    kicked = PULSE | {
-        "motion.peak_acceleration_m_s2": 2.0,
-        "motion.pulse_s": 1.0,
-        "motion.shape": "rectangular",
-    }
-    upward = {key.replace("motion", "vertical"): value for key, value in kicked.items()} | {
-        "vertical.delay_s": 0.8
-    }
+    kicked = LATER | pulse(2.0, 1.0)
+    upward = {key.replace("motion", "vertical"): value for key, value in kicked.items()}
+    upward["vertical.delay_s"] = 0.8
     breaks = build_model(rigid().with_values(kicked | upward)).run.problem.breaks
     assert {0.5, 0.8, 1.5, 1.8} <= set(breaks.round(12))
 
 
 def test_no_step_is_made_for_a_motion_that_changes_twice_within_the_smallest():
     """A step of 1e-163 s was, over whose square the inertia is no number."""
-    values = PULSE | {"motion.peak_acceleration_m_s2": 6.0, "motion.pulse_s": 0.4, "solver.duration_s": 1.0}
+    values = LATER | pulse(6.0, 0.4, "half-sine") | {"solver.duration_s": 1.0}
     at_once, _ = finished(rigid().with_values(values | {"motion.delay_s": 0.0}))
     model, ending = finished(rigid().with_values(values | {"motion.delay_s": 1e-162}))
     assert ending.status == "completed", ending.error
@@ -92,15 +80,14 @@ def test_a_loose_tolerance_saves_steps_of_a_rigid_container_and_keeps_its_motion
         assert coarse.run.clock[0].steps < 0.75 * model.run.clock[0].steps
         rotation = model.run.track[0].max_rotation
         assert coarse.run.track[0].max_rotation == pytest.approx(rotation, rel=0.01)
-        assert not build_model(
-            rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
-        ).run.problem.control.eager
+        elastic = rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
+        assert not build_model(elastic).run.problem.control.eager
 
 
 def test_eager_steps_on_a_record_are_longer_and_keep_its_motion():
     times = np.arange(0.0, 12.0, 0.01)
-    pulse = 4.0 * np.sin(2.0 * np.pi * times) * (times < 1.0)
-    record = rigid(solver__duration_s="auto").with_motion(times, pulse)
+    cycle = 4.0 * np.sin(2.0 * np.pi * times) * (times < 1.0)
+    record = rigid(solver__duration_s="auto").with_motion(times, cycle)
     exact, close = (build_model(record.with_values({"solver.energy_tolerance": t})) for t in (1.0, 10.0))
     verdicts = [run_without_history(model, None)[0] for model in (exact, close)]
     assert close.run.clock[0].steps < 0.6 * exact.run.clock[0].steps
@@ -108,14 +95,9 @@ def test_eager_steps_on_a_record_are_longer_and_keep_its_motion():
     assert verdicts[1].rotation_ratio == pytest.approx(verdicts[0].rotation_ratio, rel=2e-3)
 
 
-@pytest.fixture
-def few_attempts(monkeypatch):
-    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_SPARE", 50.0)
-    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_ROCKING", 1.0)
-    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_STEP", 0.1)
-
-
-def test_a_run_without_headway_fails_and_says_so(few_attempts):
+def test_a_run_without_headway_fails_and_says_so(monkeypatch):
+    for name, few in (("SPARE", 50.0), ("OF_ROCKING", 1.0), ("OF_STEP", 0.1)):
+        monkeypatch.setattr(contact.stepping.control, f"ATTEMPTS_{name}", few)
     _, ending = finished(rigid())
     assert ending.status == "failed"
     assert ending.error is not None and "no progress:" in ending.error

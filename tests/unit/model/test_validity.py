@@ -51,9 +51,8 @@ def test_a_run_that_inverts_an_element_fails_and_says_where():
 def test_a_step_that_fails_says_what_failed():
     model = build_model(load_case("seed_box", ["solver.model=rigid"]))
     weight = model.container.mesh.mass * model.case.gravity_m_s2
-    messages = {
-        residual: stepping_failure(model, residual) for residual in (np.nan, np.inf, 1e-12 * weight, weight)
-    }
+    residuals = (np.nan, np.inf, 1e-12 * weight, weight)
+    messages = {residual: stepping_failure(model, residual) for residual in residuals}
     for message in messages.values():
         assert message.startswith("step 1, t = 0 s: ") and "at the smallest step (" in message
         assert "try a" in message and "nan" not in message and "inf" not in message

@@ -1,4 +1,4 @@
-"""On a weak floor a container turns inside the edge of what touches: all that follows from the width follows it.
+"""Uplift follows what bears and where the mass is: on a weak floor a container turns inside the edge of what touches.
 
 By hand: the stack weighs W = 98.1 kN and stands on castings of c = 0.1 m; the floor is plastic under c W/F of them.
 """
@@ -7,22 +7,18 @@ import numpy as np
 import pytest
 from cases import named_case
 from floors import half_sine_pulse, one_sine_pulse
+from runs import pulse
 
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
+from fem.model.container import changed_container, discretise
 from fem.model.model import build_model
 from fem.run.simulation import run_without_history
 
 WEIGHT, LENGTH, EDGE = 98.1e3, 0.1, 0.55
 STRENGTH = 5e6  #: of asphalt [Pa]
-ASPHALT = {
-    "solver.model": "rigid",
-    "contact.mu_static": 2.0,
-    "contact.mu_kinetic": 2.0,
-    "floor.kind": "slab",
-    "floor.preset": "asphalt",
-    "output.fields_s": 0.0,
-}
+ASPHALT = {"solver.model": "rigid", "contact.mu_static": 2.0, "contact.mu_kinetic": 2.0}
+ASPHALT |= {"floor.kind": "slab", "floor.preset": "asphalt", "output.fields_s": 0.0}
 
 
 def on_asphalt(times, **values):
@@ -73,9 +69,8 @@ def test_the_points_of_a_flat_base_find_by_themselves_where_it_turns(bears, shar
         "floor.corner_patch_m": None,
     }
     uplift = 9.81 * (EDGE - 0.25 * 1.1 * 98.1 / bears) / 2.0
-    push = {"kind": "pulse", "shape": "half-sine", "pulse_s": 6.0, "peak_acceleration_m_s2": share * uplift}
-    motion = {f"motion.{key}": value for key, value in push.items()}
-    case = named_case("seed_stack_plateau", ASPHALT | flat | soft | motion | {"solver.duration_s": 6.0})
+    push = pulse(share * uplift, 6.0, "half-sine") | {"solver.duration_s": 6.0}
+    case = named_case("seed_stack_plateau", ASPHALT | flat | soft | push)
     model = build_model(case)
     assert model.static.uplift_acceleration == pytest.approx(uplift)
     verdict, error = run_without_history(model, None)
@@ -101,23 +96,59 @@ def block(times):
 )
 def test_it_rocks_as_an_event_driven_block_of_that_width(times, shape, seconds, peak):
     duration = 0.9 if shape == "half-sine" else 6.0  # the corners of the weakest do not survive an impact
-    keys = {"kind": "pulse", "shape": shape, "pulse_s": seconds, "peak_acceleration_m_s2": peak}
-    case = on_asphalt(
-        times, **{f"motion.{key}": value for key, value in keys.items()}, **{"solver.duration_s": duration}
-    )
+    case = on_asphalt(times, **pulse(peak, seconds, shape), **{"solver.duration_s": duration})
     verdict, error = run_without_history(build_model(case), None)
     assert error is None and verdict.valid
-    pulse = half_sine_pulse if shape == "half-sine" else one_sine_pulse
-    expected = simulate_rocking(block(times), pulse(peak=peak, duration=seconds), duration=duration)
+    floor = half_sine_pulse if shape == "half-sine" else one_sine_pulse
+    expected = simulate_rocking(block(times), floor(peak=peak, duration=seconds), duration=duration)
     assert verdict.max_rotation_rad == pytest.approx(expected.largest_rotation, rel=0.05)
 
 
 @pytest.mark.parametrize(("peak", "outcome"), [(3.6, "invalid"), (3.8, "overturned")])
 def test_a_fall_before_the_floor_is_destroyed_is_a_fall(peak, outcome):
     # 6.5 mm deep as it passes its slenderness angle, and no deeper; where it stands it falls back on that floor, 24 mm.
-    keys = {"kind": "pulse", "shape": "sine", "pulse_s": 1.0, "peak_acceleration_m_s2": peak}
-    case = on_asphalt(1.5, **{f"motion.{key}": value for key, value in keys.items()})
+    case = on_asphalt(1.5, **pulse(peak, 1.0, "sine"))
     verdict, error = run_without_history(build_model(case), None)
     assert error is None and verdict.outcome == outcome
     expected = simulate_rocking(block(1.5), one_sine_pulse(peak=peak, duration=1.0), duration=20.0)
     assert (expected.largest_rotation > 1.5) == (outcome == "overturned")
+
+
+RIGID = {"solver.model": "rigid", "floor.kind": "rigid", "contact.mu_static": 2.0, "output.fields_s": 0.0}
+WEAK_FLOOR = {
+    "floor.kind": "slab",
+    "floor.preset": "concrete C25/30",
+    "floor.bearing_strength_Pa": 5e6,
+    "floor.corner_patch_m": [0.1, 0.25],
+}
+#: half the width over the height of the mass centre, of the stack
+SLENDERNESS = 0.55 / 2.0
+
+
+def rocks(values: dict, share: float, toward: float) -> bool:
+    """Whether the stack rocks under a pulse of a share of the uplift acceleration of such a block."""
+    pushed = pulse(share * 9.81 * toward, 0.3) | {"solver.duration_s": 0.3}
+    case = named_case("seed_stack_plateau", RIGID | pushed | values)
+    own = case.with_values({"container.eccentricity_m": 0.0, "container.centroid_m": 0.5})
+    model = build_model(case, changed_container(case, discretise(own), own))
+    verdict, error = run_without_history(model, None)
+    assert error is None
+    return verdict.rotation_ratio > 0.01
+
+
+@pytest.mark.parametrize(
+    ("values", "slenderness"),
+    [
+        ({}, SLENDERNESS),
+        ({"support.effective_width": 0.9}, 0.9 * SLENDERNESS),
+        # a floor that accelerates to the right turns it about its left corner, which is farther away
+        ({"container.eccentricity_m": 0.05}, (0.55 + 0.05) / 2.0),
+        ({"container.eccentricity_m": -0.05}, (0.55 - 0.05) / 2.0),
+        ({"container.centroid_m": 0.55}, 0.55 / 2.05),
+        # the floor bears 125 kN under a corner and the stack weighs 98.1: plastic under 78.5 of 100 mm, from the edge
+        (WEAK_FLOOR, (0.55 - 0.5 * 0.1 * 98.1 / 125.0) / 2.0),
+    ],
+)
+def test_uplift_follows_the_width_that_bears_and_the_mass_centre(values, slenderness):
+    assert not rocks(values, 0.99, slenderness)
+    assert rocks(values, 1.06, slenderness)

@@ -75,9 +75,8 @@ def test_the_file_states_the_unit_and_its_user_may_not_state_another(tmp_path, n
     assert first_of(read(tmp_path, text, unit=found.unit)).values == pytest.approx(found.values)
     with pytest.raises(ValueError, match=f"the file states '{found.unit}', but unit = 'mm/s2' is given"):
         read(tmp_path, text, unit="mm/s2")
-    with pytest.raises(
-        ValueError, match=f"sample_interval_s is for a file of one column, and this is a {form.format}"
-    ):
+    words = f"sample_interval_s is for a file of one column, and this is a {form.format}"
+    with pytest.raises(ValueError, match=words):
         read(tmp_path, text, sample_interval=0.01)
 
 

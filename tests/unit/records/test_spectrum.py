@@ -105,13 +105,7 @@ def test_two_other_programs_agree():
 @pytest.mark.parametrize(
     ("step", "values", "period", "damping_ratio", "told"),
     [
-        (
-            0.01,
-            np.ones(9),
-            0.0199,
-            0.05,
-            r"0\.0199 s is out .*: samples 0\.01 s apart describe periods from 0\.02 s",
-        ),
+        (0.01, np.ones(9), 0.0199, 0.05, r"0\.0199 s is out .*: samples 0\.01 s .* periods from 0\.02 s"),
         (0.01, np.ones(9), math.nan, 0.05, "a period of nan s"),
         (0.0, np.ones(9), 1.0, 0.05, "the step between samples must be positive"),
         (0.01, np.ones(9), 1.0, 1.0, r"damping ratio must lie in \[0, 1\), got 1\.0"),

@@ -6,20 +6,17 @@ import shutil
 
 import numpy as np
 import pytest
+from interrupted_runs import stored_run
 from PIL import Image
 
 import fem
 import fem.render.picture
 from fem import __main__ as command_line
-from fem.case.case import load_case
 from fem.render import opengl as rendering
 from fem.render.picture import Scene, caption, time_of_largest_rotation, write_movie, write_picture
 from fem.render.scene import summarise_frames
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
-from fem.run.run import RunOptions, run_case
-
-SMALL = ("output.figures=false", "solver.element_size_m=0.5", "solver.elastic_modes=4")
 
 
 @pytest.fixture(scope="session")
@@ -30,17 +27,12 @@ def renders():
         pytest.skip(f"no pictures on this machine: {reason}; {rendering.MEND_PICTURES}")
 
 
-def run_into(folder, name, *overrides):
-    case = load_case(name, [*SMALL, *overrides])
-    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
-    return fem.open_run(folder)
-
-
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """A stack that rocks on a moving floor, with stresses."""
-    folder = tmp_path_factory.mktemp("pictures") / "r"
-    return run_into(folder, "rocking", "solver.duration_s=1", "output.fields_s=0.1")
+    keys = ("output.figures=false", "solver.element_size_m=0.5", "solver.elastic_modes=4")
+    case = fem.load_case("rocking", [*keys, "solver.duration_s=1", "output.fields_s=0.1"])
+    return stored_run(case, tmp_path_factory.mktemp("pictures") / "r", band=False)
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,10 @@ import re
 import numpy as np
 import pytest
 from browser import CHROMIUM, Browser
+from small_sweep import sweep_in
 
 import fem
 from fem.report.explorer import explorer
-from fem.runtime.progress import Reporter
-from fem.study.file import load_sweep
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
 
@@ -33,9 +32,8 @@ cells = "all"
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     place = tmp_path_factory.mktemp("explorer")
-    (place / "boxes.toml").write_text(SWEEP)
-    sweep = load_sweep(str(place / "boxes.toml"))
-    run_sweep(sweep, place / "boxes", jobs=1, resume=False, force=False, reporter=Reporter())
+    sweep = sweep_in(place, SWEEP, "boxes")
+    run_sweep(sweep, place / "boxes", jobs=1)
     page = place / "explorer.html"
     page.write_text(explorer(sweep, place / "boxes", 1), encoding="utf-8")
     return sweep, page

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from browser import CHROMIUM, FAINT, Browser
 from site_example import write_example
+from small_sweep import sweep_in
 from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
@@ -15,9 +16,7 @@ from fem.report.run_page import run_report
 from fem.report.study_page import ensemble_report, hall_report, response_report, sweep_report
 from fem.results.errors import FolderError
 from fem.results.reader import open_run
-from fem.runtime.progress import Reporter
 from fem.site.page import site_report
-from fem.study.file import load_sweep
 from fem.study.hall import read_hall, run_hall
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
@@ -55,9 +54,7 @@ def pages(gallery, tmp_path_factory):
     place = tmp_path_factory.mktemp("pages")
     gallery.copy("default", place)
     (place / "run.html").write_text(run_report(gallery.run("default")), encoding="utf-8")
-    (place / "boxes.toml").write_text(SWEEP)
-    asked = load_sweep(str(place / "boxes.toml"))
-    run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=Reporter())
+    run_sweep(sweep_in(place, SWEEP, "boxes"), place / "boxes", jobs=1)
     (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
     (place / "list.csv").write_text(LIST, encoding="utf-8")
     base = load_case("seed_box", ("solver.model=rigid", "solver.duration_s=1"))
@@ -171,9 +168,8 @@ class TestTheAnimation:
         assert all(b > a for a, b in zip(before, after, strict=True))
         axes = json.loads(run_page.evaluate("document.querySelector('.cursor').parentElement.dataset.axes"))
         share = (stopped - axes["x"][0]) / (axes["x"][1] - axes["x"][0])
-        assert after[0] == pytest.approx(
-            100.0 * (axes["left"] + share * (axes["right"] - axes["left"])), abs=0.3
-        )
+        place = 100.0 * (axes["left"] + share * (axes["right"] - axes["left"]))
+        assert after[0] == pytest.approx(place, abs=0.3)
 
     def test_slider_and_keys_go_through_time(self, run_page):
         run_page.evaluate("document.getElementById('time').focus()")
@@ -185,9 +181,8 @@ class TestTheAnimation:
         assert run_page.evaluate(CLOCK) == pytest.approx(0.6)
         run_page.press("End", 35)
         assert run_page.evaluate(CLOCK) == pytest.approx(2.0)
-        assert "rotation" in run_page.evaluate(
-            "document.getElementById('time').getAttribute('aria-valuetext')"
-        )
+        said = "document.getElementById('time').getAttribute('aria-valuetext')"
+        assert "rotation" in run_page.evaluate(said)
         run_page.press(" ", 32)  # from the end it plays again from the start
         run_page.wait(f"{CLOCK} < 1.9 && {CLOCK} > 0")
         run_page.press("k", 75)

@@ -100,9 +100,8 @@ def test_the_animation_moves_the_boxes_as_the_history_does(run):
     turns = [run.history[name][instant] for name in ("rotation_rad", "box_2_rotation_rad")]
     assert last.rotation == pytest.approx(turns, abs=1e-6) and np.abs(last.elastic).max() < 1e-6
     corners = shown.points[shown.corners[1]] + shown.centroid[1]
-    assert corners == pytest.approx(
-        np.array([[-0.55, 1.0], [0.55, 1.0], [-0.55, 2.0], [0.55, 2.0]]), abs=1e-9
-    )
+    places = np.array([[-0.55, 1.0], [0.55, 1.0], [-0.55, 2.0], [0.55, 2.0]])
+    assert corners == pytest.approx(places, abs=1e-9)
 
 
 def test_rigid_motion_and_deformation_make_the_frame_of_an_elastic_container(gallery):

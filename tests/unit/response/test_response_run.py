@@ -1,9 +1,9 @@
 """A response curve in its folder: tables, figures; stopped or killed it continues to the same bytes."""
 
-import csv
 import json
 
 import pytest
+from small_sweep import rows_of
 
 from contact.stepping.body import CENTRE_Z, ROTATION
 from fem.__main__ import main
@@ -28,9 +28,8 @@ def request_of(*changes, **values):
 def test_what_is_held_is_what_the_case_states():
     assert request_of("motion.peak_acceleration_m_s2=4").held == "acceleration"
     assert request_of("motion.amplitude_m=0.05").held == "displacement"
-    assert request_of("motion.amplitude_m=0.05", hold="acceleration").held_value == pytest.approx(
-        0.05 * 6.928**2
-    )
+    held = request_of("motion.amplitude_m=0.05", hold="acceleration")
+    assert held.held_value == pytest.approx(0.05 * 6.928**2)
 
 
 def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
@@ -41,16 +40,13 @@ def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
     assert main(line) == 0
     result = json.loads(capsys.readouterr().out)
     assert result == json.loads((tmp_path / "r" / "response.json").read_text())
-    with (tmp_path / "r" / "response.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "r" / "response.csv")
     assert [row["direction"] for row in rows] == ["up", "up", "down", "down"]
     for row, point in zip(rows, result["points"], strict=True):
         assert float(row["rotation_ratio"]) == point["rotation_ratio"]
-    with (tmp_path / "r" / "sections.csv").open() as file:
-        assert len(list(csv.DictReader(file))) >= 4 * 8
+    assert len(rows_of(tmp_path / "r" / "sections.csv")) >= 4 * 8
     for name, models in (("starts", {"rigid"}), ("shell", {"reduced"})):
-        with (tmp_path / "r" / f"{name}.csv").open() as file:
-            assert {row["model"] for row in csv.DictReader(file)} == models
+        assert {row["model"] for row in rows_of(tmp_path / "r" / f"{name}.csv")} == models
     names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
     assert names == {"response_curve.svg", "portraits.svg"}
 
@@ -73,12 +69,10 @@ def test_each_frequency_begins_on_a_floor_that_is_whole(tmp_path):
             assert not carried.crushed.any() and carried.pose[ROTATION] == before.run.old.pose[ROTATION]
             deepest = int(before.run.old.crushed.argmax())
             assert carried.point[deepest, 1] == before.run.old.point[deepest, 1]
-            assert carried.pose[CENTRE_Z] - before.run.old.pose[CENTRE_Z] == pytest.approx(
-                depths[-1], abs=1e-12
-            )
-        (point,), before = computed(
-            request, container, task, [], before, build_model(case, container).run.problem.control
-        )
+            rise = carried.pose[CENTRE_Z] - before.run.old.pose[CENTRE_Z]
+            assert rise == pytest.approx(depths[-1], abs=1e-12)
+        control = build_model(case, container).run.problem.control
+        (point,), before = computed(request, container, task, [], before, control)
         assert point.row.status == "completed" and point.row.reason is None  # the energy balance closes
     assert min(depths) > 1e-5
 

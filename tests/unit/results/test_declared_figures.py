@@ -1,9 +1,10 @@
 """The declaration of the figures of a run: each stands in every place that it names, and is filled by some run."""
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import pytest
+from site_example import RUN
 
 from fem.case.case import load_case
 from fem.results.figures import (
@@ -15,7 +16,6 @@ from fem.results.figures import (
     keys_of,
 )
 from fem.results.run_result import Band, ChangedRun, Verdict
-from fem.site.result import SiteRun
 from fem.site.runs import COLUMNS
 from fem.study.runner import run_chunk
 from fem.study.sweep_table import FOUND
@@ -56,15 +56,7 @@ def test_a_member_of_a_band_and_its_ranges_have_the_figures_of_a_band_and_no_oth
 
 def test_a_figure_is_a_column_of_tables_and_of_the_runs_of_a_site():
     assert set(keys_of(Place.COLUMN)) <= set(SCALARS) <= set(FOUND)
-    of_site = SiteRun(
-        motion=1,
-        vertical_sign=0,
-        mu_static=0.4,
-        mu_kinetic=0.2,
-        mass="full",
-        model="rigid",
-        **FULL.figures(Place.RUNS),
-    )
+    of_site = replace(RUN, **FULL.figures(Place.RUNS))
     assert set(keys_of(Place.RUNS)) <= set(COLUMNS)
     assert set(OF_FIELDS) & of_site.to_json().keys() == set(keys_of(Place.RUNS))
 
@@ -93,11 +85,7 @@ def test_every_figure_is_filled_by_some_run():
 @pytest.mark.parametrize(("velocity", "largest"), [(0.5, 0.5), (-0.5, 0.5), (0.0, 0.0)])
 def test_a_container_pushed_over_a_still_floor_slides_fastest_at_the_start(velocity, largest):
     # friction alone acts on it: v0 - mu g t
-    keys = (
-        "motion.kind=none",
-        f"initial.velocity_m_s={velocity}",
-        "solver.model=rigid",
-        "solver.duration_s=1",
-    )
+    pushed = ("motion.kind=none", f"initial.velocity_m_s={velocity}")
+    keys = (*pushed, "solver.model=rigid", "solver.duration_s=1")
     (row,) = run_chunk(lambda name: load_case(name, keys), ["sliding"])
     assert row["max_slip_velocity_m_s"] == pytest.approx(largest, rel=1e-2, abs=1e-9)

@@ -19,9 +19,8 @@ from fem.run.preview import required_disk
 
 COMMON = ("solver.model=rigid", "solver.duration_s=2", "output.figures=false", "output.fields_s=0.05")
 BESIDE = 4e6  #: told for a report, figures and a checkpoint, none of which are written here [bytes]
-ROOM = (
-    400_000  #: of the small file system [bytes]: less than the run's two megabytes, more than its beginning
-)
+#: of the small file system [bytes]: less than the run's two megabytes, more than its beginning
+ROOM = 400_000
 
 
 @pytest.fixture
@@ -100,11 +99,8 @@ def test_a_full_disk_ends_with_3_and_what_was_written_is_continued(command, smal
             filler.write(bytes(ROOM - 6 * 4096))
         assert main(command) == 3
         message = capsys.readouterr().err
-        assert (
-            "No space left on device" in message
-            and str(small / "f") in message
-            and "Traceback" not in message
-        )
+        assert "No space left on device" in message and str(small / "f") in message
+        assert "Traceback" not in message
         for file in (small / "f").glob("*.json"):
             json.loads(file.read_text())
         if command[0] == "run":

@@ -116,13 +116,8 @@ class TestWriting:
         with pytest.raises(FolderError, match=rf"{subfolder} {LINKED}"):
             begun(folder, force=True)
         with pytest.raises(OSError, match=LINKED):
-            FieldWriter(
-                folder / subfolder,
-                points=np.zeros((4, 2)),
-                cells=np.zeros((1, 4)),
-                region=np.zeros(1),
-                box=[],
-            )
+            cells = {"points": np.zeros((4, 2)), "cells": np.zeros((1, 4)), "region": np.zeros(1)}
+            FieldWriter(folder / subfolder, **cells, box=[])
         assert all(path.read_text() == "mine" for path in mine) and len(os.listdir(pictures)) == 2
 
     def test_copies_follow_no_link(self, folder, tmp_path):
@@ -144,9 +139,8 @@ class TestForce:
             (folder / name).write_text("mine")
 
     def test_it_lists_them_and_deletes_nothing(self, folder):
-        with pytest.raises(
-            FolderError, match=r"--force deletes files there: history\.csv, figures/a\.svg; delete"
-        ):
+        words = r"--force deletes files there: history\.csv, figures/a\.svg; delete"
+        with pytest.raises(FolderError, match=words):
             begun(folder, force=True)
         assert (folder / "history.csv").exists() and not (folder / "run.json").exists()
 
@@ -173,9 +167,8 @@ class TestReading:
     @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
     def test_a_pipe_does_not_block(self, folder, kind):
         os.mkfifo(folder / kind.mark)
-        with pytest.raises(
-            FolderError, match=r"cannot be read \(is a device or a pipe, not a regular file\)"
-        ):
+        words = r"cannot be read \(is a device or a pipe, not a regular file\)"
+        with pytest.raises(FolderError, match=words):
             read_result(folder / kind.mark, kind)
         (folder / kind.mark).unlink()
         (folder / kind.mark).symlink_to("/dev/zero")
@@ -241,12 +234,8 @@ class TestSpeaking:
 
     def test_control_characters_are_shown_as_escapes(self, tmp_path, capsys):
         bad = "\x1b]0;x\x07\x9b2J\u202egnp.exe\u2066\u200b\r"
-        assert (
-            shown(f"ä{bad}\n\t")
-            == "ä"
-            + "".join(c if c.isascii() and c.isprintable() else f"\\u{ord(c):04x}" for c in bad)
-            + "\n\t"
-        )
+        escaped = "".join(c if c.isascii() and c.isprintable() else f"\\u{ord(c):04x}" for c in bad)
+        assert shown(f"ä{bad}\n\t") == f"ä{escaped}\n\t"
         assert json.loads(shown(to_json({"a": bad}))) == {"a": bad}
         path = tmp_path / "case.toml"
         title = "".join(f"\\u{ord(c):04x}" for c in bad)

@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista
+from interrupted_runs import stored_run
 
 import fem
-from fem.case.case import load_case
 from fem.case.columns import ALWAYS
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
-from fem.run.run import RunOptions, run_case
 
 ROOT = Path(__file__).parents[3]
 ROCKING = ("solver.model=rigid", "solver.duration_s=1", "output.fields_s=0.25", "output.figures=false")
@@ -25,8 +24,7 @@ ROCKING = ("solver.model=rigid", "solver.duration_s=1", "output.fields_s=0.25", 
 def folder(tmp_path_factory):
     """A finished run of free rocking, with a rigid check and fields."""
     folder = tmp_path_factory.mktemp("opening") / "r"
-    case = load_case("free_rocking", ROCKING)
-    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
+    stored_run(fem.load_case("free_rocking", ROCKING), folder, band=False)
     return folder
 
 
@@ -50,7 +48,7 @@ def test_result_case_and_history_are_those_of_the_files(folder):
     run = fem.open_run(folder)
     assert run.result == json.loads((folder / "run.json").read_text())
     assert (run.name, run.status, run.folder) == ("free_rocking", "completed", folder)
-    assert run.case.resolved() == load_case(folder / "resolved.toml").resolved()
+    assert run.case.resolved() == fem.load_case(folder / "resolved.toml").resolved()
     written = np.loadtxt(folder / "history.csv", delimiter=",", skiprows=1, usecols=range(16))
     for column, name in enumerate(ALWAYS.names((0,))[:16]):
         assert (run.history[name] == written[:, column]).all()

@@ -4,14 +4,13 @@ import json
 
 import numpy as np
 import pytest
-from interrupted_runs import without_times
+from interrupted_runs import stored_run, without_times
 from study_folders import ensemble_folder
 
 import fem
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
 from fem.results.run_result import Verdict
-from fem.run.run import RunOptions, run_case
 
 ROCKING = ("solver.model=rigid", "solver.duration_s=1", "output.fields_s=0.25", "output.figures=false")
 STACK = ("solver.duration_s=0.5", "output.fields_s=0.1", "output.figures=false")
@@ -27,8 +26,8 @@ STACK = ("solver.duration_s=0.5", "output.fields_s=0.1", "output.figures=false")
 )
 def test_a_run_in_memory_is_that_of_the_command(tmp_path, monkeypatch, name, overrides, checks):
     case = fem.load_case(name, overrides)
-    options = RunOptions(analytic=False, **checks)  # the analytic block is for the summary of the command
-    stored = run_case(case, case_text=case.text, folder=tmp_path / "r", options=options)
+    # the analytic block is for the summary of the command
+    stored = stored_run(case, tmp_path / "r", analytic=False, **checks)
     monkeypatch.chdir(tmp_path)
     run = fem.compute(case, **checks)
     assert [path.name for path in tmp_path.iterdir()] == ["r"]

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cases import TABLE, named_case
-from runs import finish
+from interrupted_runs import stored_run
+from runs import finish, pulse
 
 from contact.motion.base_motion import NoMotion, PulseMotion
 from fem.__main__ import main
@@ -17,19 +18,10 @@ from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
 from fem.run.described import part_covered
-from fem.run.run import RunOptions, run_case
 from fem.study.runner import run_model
 
-PULSE = {
-    "solver.model": "rigid",
-    "solver.duration_s": "auto",
-    "output.fields_s": 0.0,
-    "output.figures": False,
-    "motion.kind": "pulse",
-    "motion.shape": "sine",
-    "motion.pulse_s": 0.8,
-    "contact.mu_kinetic": 0.4,
-}
+FREE = {"solver.model": "rigid", "solver.duration_s": "auto", "contact.mu_kinetic": 0.4}
+FREE |= {"output.fields_s": 0.0, "output.figures": False}
 #: a record of 4 s at 100 Hz whose peak of 1.75 g comes after 3 s
 RECORD = np.column_stack([np.arange(401) / 100.0, np.where(np.arange(401) == 300, 1.75, 0.0)])
 TABLE_CASE = f"""{TABLE}
@@ -59,8 +51,7 @@ def record_case(folder: Path, rows: np.ndarray = RECORD, more: str = ""):
 )
 def test_a_pulse_run_ends_at_rest_before_its_cap(name, shape, peak, outcome):
     # a rigid floor: on one that crushes the stack rests with a tilt, one corner deeper than the other
-    values = {"motion.peak_acceleration_m_s2": peak, "motion.shape": shape, "floor.kind": "rigid"}
-    model = build_model(named_case(name, PULSE | values))
+    model = build_model(named_case(name, FREE | pulse(peak, 0.8, shape) | {"floor.kind": "rigid"}))
     done = finish(model)
     end, resting = float(done.model.run.clock.time[0]), float(done.model.run.clock.rest_since[0])
     assert done.outcome == outcome and end < 0.5 * model.duration
@@ -73,7 +64,7 @@ def test_a_pulse_run_ends_at_rest_before_its_cap(name, shape, peak, outcome):
 
 
 def test_a_run_and_a_batch_end_at_the_same_instant_with_the_same_bits():
-    case = named_case("seed_stack", PULSE | {"motion.peak_acceleration_m_s2": 4.0})
+    case = named_case("seed_stack", FREE | pulse(4.0, 0.8, "sine"))
     one, other = build_model(case.with_values({"output.fields_s": 0.0007})), build_model(case)
     finish(one)
     row = run_model(other)
@@ -82,10 +73,10 @@ def test_a_run_and_a_batch_end_at_the_same_instant_with_the_same_bits():
 
 
 def test_free_motion_ends_with_a_fall_or_at_the_cap():
-    fallen = finish(build_model(named_case("seed_stack", PULSE | {"motion.peak_acceleration_m_s2": 6.0})))
+    fallen = finish(build_model(named_case("seed_stack", FREE | pulse(6.0, 0.8, "sine"))))
     assert fallen.status == "overturned" and float(fallen.model.run.clock.time[0]) < 5.0
-    smooth = {"motion.peak_acceleration_m_s2": 3.0, "motion.shape": "rectangular", "contact.mu_static": 0.0}
-    sliding = finish(build_model(named_case("seed_box", PULSE | smooth | {"contact.mu_kinetic": 0.0})))
+    smooth = pulse(3.0, 0.8) | {"contact.mu_static": 0.0, "contact.mu_kinetic": 0.0}
+    sliding = finish(build_model(named_case("seed_box", FREE | smooth)))
     assert float(sliding.model.run.clock.time[0]) == pytest.approx(60.8)
     assert sliding.model.run.clock.rest_since[0] == math.inf
 
@@ -100,12 +91,11 @@ def test_the_floor_that_is_left_at_speed_gives_the_contents_no_jerk(compute):
 
 
 def test_the_resolved_case_of_a_pulse_gives_the_same_run(tmp_path):
-    case = named_case("seed_box", PULSE | {"motion.peak_acceleration_m_s2": 6.0, "contact.mu_kinetic": 0.2})
-    alone = RunOptions(band=False, margin=False)
-    first = run_case(case, case_text=case.text, folder=tmp_path / "first", options=alone)
+    case = named_case("seed_box", FREE | pulse(6.0, 0.8, "sine") | {"contact.mu_kinetic": 0.2})
+    first = stored_run(case, tmp_path / "first", band=False, margin=False)
     again = load_case(tmp_path / "first" / "resolved.toml")
     assert again.solver.duration_s == "auto" and again.solver.step_s != "auto"
-    second = run_case(again, case_text=again.text, folder=tmp_path / "second", options=alone)
+    second = stored_run(again, tmp_path / "second", band=False, margin=False)
     assert first.history.samples.tobytes() == second.history.samples.tobytes()
     assert first.typed_result.verdict.at_rest_s == second.typed_result.verdict.at_rest_s
     assert first.typed_result.case_hash == second.typed_result.case_hash

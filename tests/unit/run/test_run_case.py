@@ -47,14 +47,12 @@ class TestEnd:
         result = read_result(folder / "run.json")
         assert result["status"] == "completed"
         assert result["verdict"]["outcome"] == "slide-rock"
-        assert {"case.toml", "resolved.toml", "run.json", "summary.txt", "history.csv"} <= {
-            path.name for path in folder.iterdir()
-        }
+        files = {path.name for path in folder.iterdir()}
+        assert {"case.toml", "resolved.toml", "run.json", "summary.txt", "history.csv"} <= files
         brief = capsys.readouterr().out
         assert len(brief.splitlines()) <= 40 and str(folder / "summary.txt") in brief
-        assert (
-            main([*run_command("rocking", folder, *QUICK, "solver.duration_s=2"), "--no-band", "--full"]) == 0
-        )
+        again = run_command("rocking", folder, *QUICK, "solver.duration_s=2")
+        assert main([*again, "--no-band", "--full"]) == 0
         assert (folder / "summary.txt").read_text() == capsys.readouterr().out
         assert len(history_of(folder).modes) == 401
         assert set(result["versions"]) >= {"python", "numpy", "numba", "unanchored"}
@@ -100,9 +98,8 @@ class TestAftermath:
         # block's own equation of motion says when it is.
         start = 1.06 * ANGLE
         folder = tmp_path / "r"
-        found = run(
-            folder, "free_rocking", f"initial.rotation_rad={start!r}", "solver.duration_s=0.2", band=False
-        )
+        leaning = (f"initial.rotation_rad={start!r}", "solver.duration_s=0.2")
+        found = run(folder, "free_rocking", *leaning, band=False)
         block = RigidBlock.homogeneous(width=1.1, height=4.0)
         falls_at = simulate_rocking(block, still_floor(), duration=20.0, rotation=start).overturned_at
         assert falls_at > 1.5
@@ -117,9 +114,8 @@ class TestAftermath:
         history = history_of(tmp_path / "back")
         assert history["time_s"][-1] > 0.02
         assert abs(history["rotation_rad"][-1]) < ANGLE
-        assert (
-            run(tmp_path / "falls", "overturning", "solver.duration_s=1.5", band=False).status == "overturned"
-        )
+        falls = run(tmp_path / "falls", "overturning", "solver.duration_s=1.5", band=False)
+        assert falls.status == "overturned"
         history = history_of(tmp_path / "falls")
         after = history["time_s"] > 1.5 + 1e-9
         assert after.sum() > 5
@@ -148,10 +144,8 @@ class TestAgain:
         before = (folder / "run.json").read_bytes()
         (folder / "history.csv").write_text("unchanged")
         monkeypatch.setattr(fem.run.run, "discretise", lambda *_: pytest.fail("set up again"))
-        words = [
-            word for word in run_command("rocking", folder, *QUICK, "solver.duration_s=1") if word != "-q"
-        ]
-        assert main([*words, "--no-band"]) == 0
+        words = run_command("rocking", folder, *QUICK, "solver.duration_s=1")
+        assert main([*(word for word in words if word != "-q"), "--no-band"]) == 0
         assert "--force" in "".join(capsys.readouterr())
         assert (folder / "run.json").read_bytes() == before
         assert (folder / "history.csv").read_text() == "unchanged"

@@ -162,10 +162,7 @@ FAULTS = {
     "other sizes": (lambda folder: rewrite(folder, ledger=np.zeros(3)), "its ledger is not that"),
     "no notes": (lambda folder: rewrite(folder, progress=None), "notes cannot be read"),
     "history edited": (edit_history, "history.csv was changed since"),
-    "frame gone": (
-        lambda folder: (folder / "fields" / "frame_00002.vtu").unlink(),
-        "frame_00002.vtu is miss",
-    ),
+    "frame gone": (lambda folder: (folder / "fields/frame_00002.vtu").unlink(), "frame_00002.vtu is miss"),
 }
 
 

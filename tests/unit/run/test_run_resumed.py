@@ -41,6 +41,7 @@ FREE = (
 UP = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3", "vertical.frequency_Hz=3")
 
 LOOSE = ("container.joints=loose", "motion.peak_acceleration_m_s2=9")
+PAIR = ("container.boxes=2", "solver.elastic_modes=4")
 
 STRAP = "tie=[{from = 'left', height_m = 0.5, slack_m = 0.001, stiffness_N_m = 1e6, strength_N = 1e3}]"
 
@@ -60,10 +61,7 @@ ROW = (
 CASES = {
     "row": ("rocking", ROW),
     "loose": ("seed_stack_plateau", (*RIGID, *LOOSE, *HELD_BOXES)),
-    "loose, reduced": (
-        "seed_stack_plateau",
-        (*REDUCED, *LOOSE, "container.boxes=2", "solver.elastic_modes=4"),
-    ),
+    "loose, reduced": ("seed_stack_plateau", (*REDUCED, *LOOSE, *PAIR)),
     "vertical": ("rocking", (*RIGID, *UP)),
     "rigid": ("rocking", RIGID),
     "reduced, flat base": ("seed_stack_plateau", FLAT),

@@ -7,7 +7,6 @@ import pytest
 from interrupted_runs import stored_run
 
 import fem
-from fem.case.case import load_case
 from fem.figures.forces import energy_figure
 from fem.run.card import card_of
 
@@ -21,7 +20,7 @@ KEYS = (
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("slab") / "run"
-    case = load_case("rocking", KEYS)
+    case = fem.load_case("rocking", KEYS)
     stored_run(case, place, margin=False)
     return place
 
@@ -71,7 +70,7 @@ WEAK = ("floor.bearing_strength_Pa=14e6", "solver.duration_s=10")
 
 
 def test_a_corner_that_is_destroyed_is_said_before_anything_else_and_is_never_sure(tmp_path):
-    case = load_case("rocking", (*KEYS, *WEAK))
+    case = fem.load_case("rocking", (*KEYS, *WEAK))
     stored_run(case, tmp_path / "run")
     found = json.loads((tmp_path / "run" / "run.json").read_text())
     verdict = found["verdict"]
@@ -85,15 +84,14 @@ def test_a_corner_that_is_destroyed_is_said_before_anything_else_and_is_never_su
 
 def test_what_gives_way_under_a_corner_is_named():
     posts = ("support.casting_m=[0.1, 0.1, 0.0]", "container.corner_post_N=100e3")
-    weak = load_case("rocking", (*KEYS[:1], *posts, *KEYS[2:]))
+    weak = fem.load_case("rocking", (*KEYS[:1], *posts, *KEYS[2:]))
     assert "its posts" in fem.compute(weak, band=False).verdict.invalid_reason
 
 
 @pytest.mark.parametrize("boxes", [(), ("container.boxes=2", "container.joints=loose")], ids=["one", "loose"])
 def test_pressure_in_a_frame_is_the_force_of_a_corner_on_its_patch(boxes):
-    run = fem.compute(
-        load_case("rocking", (*KEYS, *boxes, "solver.duration_s=1", "output.fields_s=0.1")), band=False
-    )
+    case = fem.load_case("rocking", (*KEYS, *boxes, "solver.duration_s=1", "output.fields_s=0.1"))
+    run = fem.compute(case, band=False)
     patch = 0.008 * 1.1
     for frame in run.fields:
         instant = round(frame.time / run.case.output.history_s)
@@ -114,7 +112,7 @@ def test_a_container_left_leaning_on_its_hole_is_said_to_lean():
         "motion.pulse_s=0.4",
     ]
     weak = ["contact.mu_static=0.6", "floor.bearing_strength_Pa=12e6", "floor.corner_patch_m=[0.1, 0.2]"]
-    run = fem.compute(load_case("stack_on_concrete", ["solver.model=rigid", *pulse, *weak]), band=False)
+    run = fem.compute(fem.load_case("stack_on_concrete", ["solver.model=rigid", *pulse, *weak]), band=False)
     result, verdict, angle = run.typed_result, run.verdict, run.typed_result.static.slenderness_angle_rad
     assert verdict.tilt_rad == pytest.approx(run.history["rotation_rad"][-1], rel=1e-6)
     assert abs(verdict.tilt_rad) > 0.005 * angle and verdict.restored

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from interrupted_runs import stored_run
+from runs import pulse
 
 from fem import compute
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.report.animation import animation_of
-from fem.results.reader import open_run
 from fem.run.summary import plain_summary
 
 OMEGA, PHASE = 9.0, 0.5
@@ -26,17 +26,10 @@ RIGID = (
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def run(tmp_path_factory):
     """A short run of the stack under both motions, compared with the rigid block."""
-    place = tmp_path_factory.mktemp("vertical") / "run"
     case = load_case("seed_stack_plateau", [*RIGID, *VERTICAL])
-    stored_run(case, place, band=False, check_rigid=True)
-    return place
-
-
-@pytest.fixture(scope="module")
-def run(folder):
-    return open_run(folder)
+    return stored_run(case, tmp_path_factory.mktemp("vertical") / "run", band=False, check_rigid=True)
 
 
 def test_the_history_has_the_motion_of_the_floor_upward(run):
@@ -57,15 +50,12 @@ def test_the_history_has_the_motion_of_the_floor_upward(run):
     assert weight == pytest.approx(98100.0, rel=1e-6)
 
 
-def test_the_static_rule_with_the_least_weight_stands_beside_the_other(run, folder):
+def test_the_static_rule_with_the_least_weight_stands_beside_the_other(run):
     static = run.typed_result.static
     assert static.own_motion_vertical.least_weight_N == pytest.approx(98100.0 * (1.0 - 3.0 / 9.81))
     for check in ("utilisation_sliding", "utilisation_overturning"):
         plain, upward = (getattr(one, check) for one in (static.own_motion, static.own_motion_vertical))
         assert upward == pytest.approx(plain / (1.0 - 3.0 / 9.81))
-    summary = " ".join((folder / "summary.txt").read_text().split())
-    assert "vertical motion 1.5 s; peaks 3 m/s2 = 0.306 g" in summary
-    assert "own, vertical sliding 40 / 54.48 kN 0.734 holds" in summary
 
 
 def test_frames_and_animation_move_with_the_floor(run):
@@ -86,12 +76,10 @@ def test_what_a_floor_without_vertical_motion_writes_stays(tmp_path):
 
 
 def test_a_run_on_two_motions_lasts_as_long_as_the_longer_one():
-    pulse = {"kind": "pulse", "shape": "sine", "peak_acceleration_m_s2": 1.0}
-    case = load_case("seed_box").with_values(
-        {f"motion.{key}": value for key, value in (pulse | {"pulse_s": 0.5}).items()}
-        | {f"vertical.{key}": value for key, value in (pulse | {"pulse_s": 0.4, "delay_s": 0.3}).items()}
-        | {"solver.duration_s": "auto", "solver.model": "rigid"}
-    )
+    later = pulse(1.0, 0.4, "sine") | {"motion.delay_s": 0.3}
+    upward = {key.replace("motion", "vertical"): value for key, value in later.items()}
+    free = {"solver.duration_s": "auto", "solver.model": "rigid"}
+    case = load_case("seed_box").with_values(pulse(1.0, 0.5, "sine") | upward | free)
     model = build_model(case)
     assert model.rest_from == 0.7
     assert model.duration == 60.7

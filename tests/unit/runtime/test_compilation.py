@@ -65,7 +65,6 @@ def test_each_stepping_is_told_before_it_is_compiled_and_what_is_left_of_it_but_
         kernel("advance_in_slices", calls=kernel("advance_on_points", calls=kernel("advance")))(1.0)
         kernel("advance")(1.0)
     told = "compiling the stepping of this model, step 1 of 2, once after installation: half a minute or more"
-    assert re.fullmatch(
-        r"compiling the stepping, step 2 of 2: 2 functions translated, \d+ s left", said.pop(1)
-    )
+    left = r"compiling the stepping, step 2 of 2: 2 functions translated, \d+ s left"
+    assert re.fullmatch(left, said.pop(1))
     assert said == [told, told]

@@ -3,7 +3,7 @@
 import pytest
 
 from fem.html.units import number
-from fem.runtime.units import RATIO, DisplayUnit, in_figures, visible_number
+from fem.runtime.units import DisplayUnit, in_figures, visible_number
 
 
 @pytest.mark.parametrize(
@@ -28,14 +28,6 @@ def test_a_number_has_the_figures_that_its_range_allows(value, reach, words):
 )
 def test_figures_are_rounded_without_an_exponent(value, figures, words):
     assert in_figures(value, figures) == words
-
-
-@pytest.mark.parametrize(
-    ("ratio", "text"),
-    [(0.0, "0"), (3.7e-5, "< 0.001"), (0.0123456, "0.0123"), (0.5, "0.500"), (5.853, "5.85"), (157.2, "157")],
-)
-def test_a_rotation_ratio_has_three_figures(ratio, text):
-    assert RATIO.text(ratio) == text
 
 
 @pytest.mark.parametrize("moment", [53954.99999999999, 53955.0, 53955.00000000001])

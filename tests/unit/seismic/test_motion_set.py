@@ -135,9 +135,8 @@ def test_matched_records_have_the_spectra_of_the_site(records):
 
 
 GENERATOR = np.random.default_rng(7)
-VALUES = in_whole_g(
-    np.concatenate([GENERATOR.standard_normal(4000) * 10.0 ** GENERATOR.integers(-9, 2, 4000), [0.0]])
-)
+SPREAD = GENERATOR.standard_normal(4000) * 10.0 ** GENERATOR.integers(-9, 2, 4000)
+VALUES = in_whole_g(np.append(SPREAD, 0.0))
 
 
 @pytest.mark.parametrize("step", [0.005, 0.01, 1.0 / 3.0])

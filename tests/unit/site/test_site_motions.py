@@ -47,9 +47,8 @@ def test_a_third_file_of_a_record_is_its_second_component(tmp_path):
     for recorded, motion in zip(ground_motions(asked, 4.0), own, strict=True):
         factor = recorded.factor  # one for all components
         np.testing.assert_allclose(recorded.second, 0.5 * factor * motion.second, rtol=1e-9, atol=1e-9)
-        np.testing.assert_allclose(
-            recorded.horizontal, 0.5 * factor * motion.horizontal, rtol=1e-9, atol=1e-9
-        )
+        expected = 0.5 * factor * motion.horizontal
+        np.testing.assert_allclose(recorded.horizontal, expected, rtol=1e-9, atol=1e-9)
 
 
 def test_records_of_a_coarse_step_are_read_between_their_samples(tmp_path):
@@ -80,9 +79,8 @@ def with_a_fling(folder, seconds):
 
 def test_a_baseline_that_takes_a_fifth_of_a_matched_record_must_be_allowed(tmp_path):
     motions = with_a_fling(tmp_path, 5.0)
-    with pytest.raises(
-        CaseError, match=r"0\.866 m/s .* \(-59 %\).*take another record, or set allow_baseline = true$"
-    ):
+    words = r"0\.866 m/s .* \(-59 %\).*take another record, or set allow_baseline = true$"
+    with pytest.raises(CaseError, match=words):
         ground_motions(request(tmp_path, motions), 4.0)
     site = str(tmp_path / "hall.toml")
     asked = load_site(site, allow_baseline=True)

@@ -49,11 +49,8 @@ def test_every_motion_run_and_method_is_on_the_page(folder):
 def test_a_page_is_green_and_signed_where_somebody_stands_for_every_input(folder):
     for unstated in ((), ("source of friction",)):
         result, _ = example()
-        page = site_report(
-            folder,
-            replace(result, inputs=replace(result.inputs, unstated=unstated)),
-            brief=True,
-        )
+        doubted = replace(result, inputs=replace(result.inputs, unstated=unstated))
+        page = site_report(folder, doubted, brief=True)
         assert ('class="sign"' in page, 'class="answer stood"' in page) == (not unstated, not unstated)
         assert ("nobody stands for source of friction" in words_of(page)) is bool(unstated)
 

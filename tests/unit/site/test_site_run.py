@@ -102,9 +102,8 @@ def test_the_container_of_the_example_fulfils_the_rule_and_overturns_at_a_higher
     runs = computed[0].runs
     assert first == min(run.factor for run in runs if run.outcome == "overturned")
     # The scan ends where a run overturns; between the last factors of the scan, others were tried.
-    assert max(run.factor for run in runs) == min(
-        point.factor for point in answer.scan if point.overturned and point.factor > 1.0
-    )
+    fell = [point.factor for point in answer.scan if point.overturned and point.factor > 1.0]
+    assert max(run.factor for run in runs) == min(fell)
     assert {run.factor for run in runs if run.stage == "refined"} - {1.0, *SCANNED}
 
 

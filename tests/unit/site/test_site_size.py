@@ -51,9 +51,8 @@ SHIPPED = load_site("site")
 def in_building(**keys: int) -> SiteRequest:
     """The site with a building of one mode, or of storeys."""
     building = {"z_over_h": 1.0, "building_period_s": 0.3, **keys}
-    return replace(SHIPPED, data={**SHIPPED.data, "building": building}).with_value(
-        "building.damping_ratio", 0.05
-    )
+    site = replace(SHIPPED, data={**SHIPPED.data, "building": building})
+    return site.with_value("building.damping_ratio", 0.05)
 
 
 @pytest.mark.parametrize(
@@ -133,9 +132,8 @@ def out(place) -> list[str]:
 def test_the_time_of_its_runs_is_told_before_the_first(place):
     told = (place / "told.txt").read_text(encoding="utf-8")
     expected = re.search(r"4 values, up to (\d+) runs: roughly \d", told)
-    assert expected and int(expected[1]) > sum(
-        point["runs"] for point in result_in(place / "found")["points"]
-    )
+    points = result_in(place / "found")["points"]
+    assert expected and int(expected[1]) > sum(point["runs"] for point in points)
     assert told.index(expected[0]) == re.search(r"\d+ (values|runs)", told).start()
     assert [line for line in told.splitlines() if "being tried" in line][:2] == [
         "number of boxes: 1 being tried",

@@ -1,9 +1,8 @@
 """An ensemble from its file to its folder: seeded, the same on any number of cores, and refused."""
 
-import csv
-
 import numpy as np
 import pytest
+from small_sweep import rows_of
 
 from fem.case.files import ENSEMBLES
 from fem.case.tables.unknown_inputs import ranges_of
@@ -56,8 +55,7 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores(tmp_path):
     run_ensemble(ensemble, folder=tmp_path / "two", jobs=2)
     for name in ("ensemble.json", "points.csv", "draws.csv", "figures/fragility.svg"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
-    with (tmp_path / "one" / "draws.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "one" / "draws.csv")
     assert len(rows) == 24
     for k, point in enumerate(one["points"]):
         found = [row["outcome"] for row in rows[8 * k : 8 * k + 8]]
@@ -66,11 +64,8 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores(tmp_path):
 
 def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
     drawn = load_ensemble(changed(tmp_path))
-    given = {
-        "contact.mu_static",
-        "contact.mu_kinetic",
-        "support.kind",
-    }  # drawn, derived, not drawn of a stack
+    # drawn, derived, not drawn of a stack
+    given = {"contact.mu_static", "contact.mu_kinetic", "support.kind"}
     assert set(drawn.unknown) == {one.key for one in ranges_of(drawn.base, 1e9)} - given
     assert drawn.held == ""
     held = load_ensemble(changed(tmp_path, ("seed = 4\n", 'seed = 4\nunknown_inputs = "held"\n')))
@@ -95,16 +90,6 @@ def test_unknown_inputs_do_not_follow_the_others(sampling):
     assert abs(np.corrcoef(one[:, 0], other[:, 0])[0, 1]) < 4.0 / np.sqrt(4096)
     both = np.mean((one[:, 0] < 0.5) & (other[:, 0] < 0.5))
     assert both == pytest.approx(0.25, abs=4.0 * np.sqrt(0.25 * 0.75 / 4096))
-
-
-@pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
-def test_each_replicate_is_stratified_and_no_two_are_the_same(sampling):
-    shares = draw_shares(sampling, seed=1, cell=0, dimensions=3, draws=64, replicates=4)
-    blocks = shares.reshape(4, 16, 3)
-    for block in blocks:
-        strata = np.sort(np.floor(16 * block), axis=0)
-        assert np.array_equal(strata, np.tile(np.arange(16)[:, None], 3))
-    assert len({block.tobytes() for block in blocks}) == 4
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,14 @@
 """Sets of motions: how they are written, what is refused and told, and each as a value of an axis or as a draw."""
 
-import csv
 import json
 import re
 
 import numpy as np
 import pytest
 from motion_files import write_motion, write_pair
+from small_sweep import rows_of, sweep_in
 
-from fem.case.case import CaseError, load_case, read_case
+from fem.case.case import CaseError, load_case
 from fem.model.motion import build_motion
 from fem.records.intensity import intensity
 from fem.records.spectrum import response_spectrum
@@ -16,30 +16,10 @@ from fem.report.study_page import ensemble_report, sweep_report
 from fem.runtime.intervals import binomial_interval, estimate
 from fem.study.axes import read_axis
 from fem.study.ensemble import begun_result, run_ensemble
-from fem.study.file import load_ensemble, load_sweep
+from fem.study.file import load_ensemble
 from fem.study.motions import read_motion_set, spectra_of
 from fem.study.sweep import asked_of, run_sweep
 from fem.study.sweep_table import open_sweep
-
-CASE = """
-[container]
-width_m = 1.1
-height_m = 4.0
-weight_N = 98100.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "table"
-file = "a_h.csv"
-quantity = "acceleration"
-unit = "m/s2"
-[vertical]
-quantity = "acceleration"
-unit = "m/s2"
-[solver]
-model = "rigid"
-"""
-
 
 UNITS = """
 case = "seed_stack_plateau"
@@ -62,8 +42,8 @@ def written(tmp_path):
 
 
 @pytest.fixture
-def base(written):
-    return read_case(CASE, folder=written)
+def base(sweep_of):
+    return sweep_of('motion.file = ["a_h.csv", "b_h.csv"]\n').base
 
 
 def test_the_motions_are_read_as_the_case_takes_them(base):
@@ -117,19 +97,7 @@ SIGNS = "vertical.scale = [1.0, -1.0]\n"
 
 @pytest.fixture
 def sweep_of(tmp_path, written):
-    def read(axes):
-        (tmp_path / "try.toml").write_text(HEAD + axes, encoding="utf-8")
-        return load_sweep(tmp_path / "try.toml")
-
-    return read
-
-
-def test_a_cell_has_both_components_of_its_motion(sweep_of):
-    sweep = sweep_of(f"motion.file = {PAIRS}\n{SIGNS}")
-    assert sweep.shape == (2, 2)
-    case = sweep.case(3)
-    assert (case.motion.kind, case.motion.file) == ("table", "b_h.csv")
-    assert (case.vertical.kind, case.vertical.file, case.vertical.scale) == ("table", "b_v.csv", -1.0)
+    return lambda axes: sweep_in(tmp_path, HEAD + axes)
 
 
 def test_a_motion_alone_has_no_vertical_motion_and_no_sign_of_it(sweep_of):
@@ -139,17 +107,6 @@ def test_a_motion_alone_has_no_vertical_motion_and_no_sign_of_it(sweep_of):
         sweep_of(f'motion.file = ["a_h.csv", ["b_h.csv", "b_v.csv"]]\n{SIGNS}')
     with pytest.raises(CaseError, match=r"'vertical.scale' varies, and 'a_h.csv' has no vertical motion"):
         sweep_of(f'motion.file = ["a_h.csv", "b_h.csv"]\n{SIGNS}')
-
-
-def sweep_hash(sweep):
-    return asked_of(sweep, read_motion_set(sweep.base, sweep.motions), 1).sweep_hash
-
-
-def test_the_hash_follows_the_files(sweep_of, tmp_path):
-    before = sweep_hash(sweep_of(f"motion.file = {PAIRS}\n"))
-    assert before == sweep_hash(sweep_of(f"motion.file = {PAIRS}\n"))
-    write_pair(tmp_path, "b", frequency=4.0)
-    assert before != sweep_hash(sweep_of(f"motion.file = {PAIRS}\n"))
 
 
 def test_the_peak_is_an_axis_of_records_too_and_ends_with_the_answer(sweep_of, tmp_path):
@@ -170,8 +127,7 @@ def test_the_peak_is_an_axis_of_records_too_and_ends_with_the_answer(sweep_of, t
     )["derived"]
     assert told_cells[1] == {"key": "vertical.file", "values": table["vertical.file"].tolist()}
     assert info["answer"].startswith("peak acceleration: stood in every motion tried up to ")
-    with (tmp_path / "out" / "answers.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = rows_of(tmp_path / "out" / "answers.csv")
     # the signs of a motion count as one
     assert [row["motion.file"] for row in rows] == ["a_h.csv", "b_h.csv"]
     for row in rows:
@@ -227,8 +183,7 @@ def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
     assert [one["file"] for one in result["motions"]] == ["a_h.csv", "b_h.csv", "c_h.csv"]
     for one in result["motions"]:
         assert one["stood"] + one["overturned"] + one["failed"] == 8  # four draws at each of two points
-    with (folder / "draws.csv").open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = rows_of(folder / "draws.csv")
     assert [rows[k]["vertical.file"] for k in (0, 4, 8)] == ["a_v.csv", "b_v.csv", ""]
     fallen = sum(row["outcome"] == "overturned" for row in rows)
     assert sum(one["overturned"] for one in result["motions"]) == fallen
@@ -242,15 +197,17 @@ def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
     assert "c_h.csv" in page and "sample of 3 motions" in page
 
 
-def test_the_result_depends_on_what_the_files_hold(ensemble_of, tmp_path):
+def test_what_a_sweep_and_an_ensemble_ask_for_depends_on_what_the_files_hold(sweep_of, ensemble_of, tmp_path):
     def asked():
-        ensemble = ensemble_of()
-        return begun_result(ensemble, read_motion_set(ensemble.base, ensemble.motions)).asked
+        sweep, ensemble = sweep_of(f"motion.file = {PAIRS}\n"), ensemble_of()
+        motions = read_motion_set(sweep.base, sweep.motions)
+        drawn = read_motion_set(ensemble.base, ensemble.motions)
+        return asked_of(sweep, motions, 1).sweep_hash, begun_result(ensemble, drawn).asked
 
     before = asked()
     assert before == asked()
     write_pair(tmp_path, "b", frequency=5.0)
-    assert asked() != before
+    assert all(one != other for one, other in zip(before, asked(), strict=True))
 
 
 def test_draws_under_one_motion_are_no_sample_of_motions():

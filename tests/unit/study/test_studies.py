@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from small_site import SITE
-from small_sweep import SMALL, rows_without_wall
+from small_sweep import SMALL, rows_without_wall, sweep_in
 
 from fem.__main__ import main
 from fem.case.case import load_case
@@ -25,7 +25,6 @@ from fem.results.errors import FolderError, OutputError
 from fem.results.figures import RUN_COLUMNS
 from fem.runtime.progress import Reporter
 from fem.study.driver import LoggedRuns
-from fem.study.file import load_sweep
 from fem.study.hall import read_hall, run_hall
 from fem.study.runner import Runner
 from fem.study.sweep import check_size, run_sweep
@@ -62,9 +61,7 @@ class Removing(Reporter):
 
 
 def sweep(tmp_path, other=False):
-    path = tmp_path / "small.toml"
-    path.write_text(SMALL.replace("count = 5", "count = 4") if other else SMALL, encoding="utf-8")
-    asked = load_sweep(path)
+    asked = sweep_in(tmp_path, SMALL.replace("count = 5", "count = 4") if other else SMALL)
     return lambda folder, **options: run_sweep(asked, folder, **options)
 
 
@@ -126,9 +123,8 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, whole, study
 @STUDIES
 def test_a_study_whose_folder_is_removed_ends_in_a_sentence(tmp_path, study, mark, log):
     folder = tmp_path / "out"
-    with pytest.raises(
-        OutputError, match=r"out: the folder was removed during the run; run the command again"
-    ):
+    words = "out: the folder was removed during the run; run the command again"
+    with pytest.raises(OutputError, match=words):
         study(tmp_path)(folder, reporter=Removing(folder))
     assert not folder.exists()
 
@@ -251,21 +247,9 @@ def test_a_row_reads_back_with_the_types_of_its_columns():
         assert row_of(RUN_COLUMNS, line_of(values.values())) == values
 
 
-@pytest.fixture(scope="module")
-def small(tmp_path_factory):
-    path = tmp_path_factory.mktemp("file") / "small.toml"
-    path.write_text(SMALL, encoding="utf-8")
-    return load_sweep(path)
-
-
-@pytest.fixture
-def computed(gallery):
-    """The folder of the sweep."""
-    return gallery("sweep")
-
-
-def test_the_table_does_not_depend_on_the_jobs(small, computed, tmp_path):
-    one, two = open_sweep(computed).info, run_sweep(small, tmp_path / "two", jobs=2)
+def test_the_table_does_not_depend_on_the_jobs(gallery, tmp_path):
+    computed = gallery("sweep")
+    one, two = open_sweep(computed).info, run_sweep(sweep_in(tmp_path), tmp_path / "two", jobs=2)
     assert one["status"] == two["status"] == "completed"
     assert rows_without_wall(computed) == rows_without_wall(tmp_path / "two")
     assert one["outcomes"] == two["outcomes"]
@@ -276,6 +260,9 @@ def test_the_table_does_not_depend_on_the_jobs(small, computed, tmp_path):
     assert answers[0].count(b"\n") == 1 + 2  # a row for each frequency
     assert {"overturned", "rest"} <= set(one["outcomes"])
     assert not (computed / "rows.csv").exists()
+    table = open_sweep(computed)
+    assert np.array_equal(table["contact.mu_kinetic"], np.full(10, 0.2))
+    assert np.array_equal(np.isfinite(table["overturned_at_s"]), table.outcome == "overturned")
 
 
 @pytest.mark.slow
@@ -302,25 +289,10 @@ def test_a_sweep_killed_five_times_gives_the_same_table(tmp_path, monkeypatch):
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
 
 
-def test_the_folder_opens_as_arrays(small, computed):
-    table = open_sweep(computed)
-    info = table.info
-    assert table.shape == small.shape
-    grid = table["motion.peak_acceleration_m_s2"].reshape(table.shape)
-    assert np.array_equal(grid[1], small.axes[1].values)
-    assert np.array_equal(table["contact.mu_kinetic"], np.full(10, 0.2))
-    fallen = table.outcome == "overturned"
-    assert fallen.sum() == info["outcomes"]["overturned"]
-    assert np.all(np.isfinite(table["overturned_at_s"]) == fallen)
-    assert table["unsure"].sum() == info["unsure"]
-
-
 def test_another_band_keeps_the_rows(gallery, tmp_path):
     folder = gallery.copy("sweep", tmp_path)
     rows, walls = rows_without_wall(folder), open_sweep(folder)["wall_s"]
-    path = tmp_path / "small.toml"
-    path.write_text(SMALL + '[perturbation]\ncells = "none"\n', encoding="utf-8")
-    again = run_sweep(load_sweep(path), folder)
+    again = run_sweep(sweep_in(tmp_path, SMALL + '[perturbation]\ncells = "none"\n'), folder)
     assert (again["unsure"], again["perturbed"]) == (None, 0)
     kept = rows_without_wall(folder)
     last = kept[0].index("perturbed")
@@ -332,10 +304,8 @@ def test_another_band_keeps_the_rows(gallery, tmp_path):
 def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path):
     # At 4 rad/s the expression has no value; the ends of the range are fine.
     derived = "[derived]", '[derived]\n"container.depth_m" = "1 / (motion.angular_frequency_rad_s - 4)^2"'
-    path = tmp_path / "bad.toml"
     few = SMALL.replace("count = 2", "count = 3").replace("count = 5", "count = 2")
-    path.write_text(few.replace(*derived), encoding="utf-8")
-    run_sweep(load_sweep(path), tmp_path / "out")
+    run_sweep(sweep_in(tmp_path, few.replace(*derived)), tmp_path / "out")
     table = open_sweep(tmp_path / "out")
     middle = table["motion.angular_frequency_rad_s"] == 4.0
     assert np.array_equal(table.outcome == "failed", middle)
@@ -349,10 +319,9 @@ def test_a_million_cells_need_force_and_name_time_and_disk(tmp_path):
 """
     text = "\n".join(line for line in SMALL.splitlines() if not line.startswith('"solver.'))
     text = text.replace("count = 2", "count = 30").replace("count = 5", "count = 20")
-    path = tmp_path / "huge.toml"
-    path.write_text(text.replace("[derived]", axes + "[derived]"))
+    huge = sweep_in(tmp_path, text.replace("[derived]", axes + "[derived]"))
     with pytest.raises(CaseError, match="1320000 cells") as refused:
-        check_size(load_sweep(path), 1, False)
+        check_size(huge, 1, False)
     # half of the cells are of the full model: 660000 x (1 + 4 x 3) s, of which one figure is known
     assert all(words in str(refused.value) for words in ("roughly 2500 h", "GB", "--force"))
-    check_size(load_sweep(path), 1, True)
+    check_size(huge, 1, True)

@@ -1,11 +1,10 @@
 """How sure the cells of a sweep are: which are perturbed, how, what the copies say, how wide the band is."""
 
-import csv
 import math
 
 import numpy as np
 import pytest
-from small_sweep import SMALL
+from small_sweep import SMALL, rows_of, sweep_in
 
 from fem.case.case import load_case
 from fem.model.model import build_model
@@ -16,7 +15,6 @@ from fem.run.simulation import run_without_history
 from fem.study.axes import Axis
 from fem.study.design import Perturbation
 from fem.study.draws import held_inputs
-from fem.study.file import load_sweep
 from fem.study.sure import Copies, around, band_width, coarse_cells, left_out, near_cells
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
@@ -26,12 +24,7 @@ pytestmark = pytest.mark.usefixtures("undrawn")
 
 @pytest.fixture
 def sweep_of(tmp_path):
-    def read(text):
-        path = tmp_path / "small.toml"
-        path.write_text(text, encoding="utf-8")
-        return load_sweep(path)
-
-    return read
+    return lambda text: sweep_in(tmp_path, text)
 
 
 def copies_of(sweep, cell=0):
@@ -56,10 +49,8 @@ def test_a_copy_of_a_cell_is_the_member_of_the_band_of_its_run(sweep_of):
             found[key_of(copy.change.values)] = run_without_history(model, None)[0]
     assert {"contact.mu_static", "container.eccentricity_m"} <= {key for some in found for key, _ in some}
     for key, verdict in found.items():
-        assert (verdict.outcome, verdict.rotation_ratio) == (
-            members[key].outcome,
-            members[key].rotation_ratio,
-        )
+        assert verdict.outcome == members[key].outcome
+        assert verdict.rotation_ratio == members[key].rotation_ratio
 
 
 @pytest.mark.parametrize(
@@ -97,8 +88,7 @@ def test_a_cell_is_as_sure_as_its_copies_are_and_what_decides_it_turns_it(sweep_
     sweep = sweep_of(SMALL + '[perturbation]\ncells = "all"\n')
     info = run_sweep(sweep, tmp_path / "out")
     table = open_sweep(tmp_path / "out")
-    with (tmp_path / "out" / "members.csv").open() as stream:
-        members = list(csv.DictReader(stream))
+    members = rows_of(tmp_path / "out" / "members.csv")
     for cell in range(sweep.count):
         own = str(table["outcome"][cell])
         copies = [row for row in members if int(row["cell"]) == cell]
@@ -109,9 +99,8 @@ def test_a_cell_is_as_sure_as_its_copies_are_and_what_decides_it_turns_it(sweep_
         decided = table["decided_by"][cell].split()
         assert bool(decided) == (expected != "sure")
         if expected == "unsure":
-            turned = [
-                row["change"] for row in copies if (row["outcome"] == "overturned") != (own == "overturned")
-            ]
+            falls = own == "overturned"
+            turned = [row["change"] for row in copies if (row["outcome"] == "overturned") != falls]
             assert all(f"{key}=" in " ".join(turned) for key in decided)
     assert np.array_equal(table["sure"] == "unsure", table["unsure"] == 1.0)
     assert sum(info["sure"].values()) == sweep.count
@@ -159,9 +148,8 @@ def test_the_band_is_as_wide_as_its_stretch_of_cells():
 
 
 def test_each_member_changes_one_thing():
-    case = load_case(
-        "seed_stack_plateau", ["floor.kind=rigid", "contact.damping_ratio=1.0", "motion.phase_rad=6.2"]
-    )
+    keys = ["floor.kind=rigid", "contact.damping_ratio=1.0", "motion.phase_rad=6.2"]
+    case = load_case("seed_stack_plateau", keys)
     found = members(case)
     peak = case.motion.peak_acceleration_m_s2 or case.motion.amplitude * case.motion.angular_frequency**2
     changed = [case.with_values(member) for member in found]

@@ -6,6 +6,7 @@ import warnings
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from small_sweep import sweep_in
 
 from fem.case.case import case_hash
 from fem.case.files import CASES, SWEEPS
@@ -19,12 +20,7 @@ FREQUENCY = '"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 
 
 @pytest.fixture
 def sweep_of(tmp_path):
-    def read(body, head=HEAD):
-        path = tmp_path / "try.toml"
-        path.write_text(head + body, encoding="utf-8")
-        return load_sweep(path)
-
-    return read
+    return lambda body: sweep_in(tmp_path, HEAD + body)
 
 
 def test_the_last_axis_is_the_fastest(sweep_of):
@@ -87,9 +83,8 @@ def written(folder, text, case):
 
 @READERS
 def test_a_file_beside_it_wins_over_a_shipped_case(tmp_path, read, text):
-    (tmp_path / "seed_box").write_text(
-        CASES.text("seed_box").replace("boxes = 1 ", "boxes = 2 "), encoding="utf-8"
-    )
+    pair = CASES.text("seed_box").replace("boxes = 1 ", "boxes = 2 ")
+    (tmp_path / "seed_box").write_text(pair, encoding="utf-8")
     assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 2
     (tmp_path / "seed_box").unlink()
     assert read(written(tmp_path, text, "seed_box")).base.container.boxes == 1
@@ -105,14 +100,9 @@ def test_a_path_out_of_the_folder_is_refused(tmp_path, read, text, case):
 
 @READERS
 def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
-    path = written(tmp_path, text, "seed_box")
-    changed = path.read_text(encoding="utf-8")
-    changed = (
-        changed.replace("[axes]", '"contact.mu_static" = 0.5\n[axes]')
-        if "[set]" in changed
-        else (changed + '[set]\n"contact.mu_static" = 0.5\n')
-    )
-    path.write_text(changed, encoding="utf-8")
+    own = '"contact.mu_static" = 0.5\n'
+    set_too = text.replace("[axes]", f"{own}[axes]") if "[set]" in text else f"{text}[set]\n{own}"
+    path = written(tmp_path, set_too, "seed_box")
     with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
         read(path)
 

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
@@ -73,9 +72,8 @@ def test_a_map_shows_how_many_copies_overturn_beside_the_outcome():
     figure = sweep_map(table, "outcome", MapChoice())
     assert "with mu_k = mu_s/2" in figure.get_suptitle()
     share, outcome = panels_of(figure)
-    assert words_of(share) == [
-        *("none overturns", "up to a quarter", "up to three quarters", "more", "all overturn")
-    ]
+    legend = ["none overturns", "up to a quarter", "up to three quarters", "more", "all overturn"]
+    assert words_of(share) == legend
     assert {"rest", "slide", "rock", "slide-rock", "overturned"} <= set(words_of(outcome))
     shades = [to_rgba(one) for one in SHARE_COLOURS.values()]
     classes = [[shades.index(tuple(cell)) for cell in row] for row in colours_of(share)]
@@ -89,25 +87,14 @@ def test_a_map_shows_how_many_copies_overturn_beside_the_outcome():
 def test_two_axes_span_a_map_and_the_rest_has_panels():
     table = table_of(FREQUENCY, MU, PEAK)
     figure = sweep_map(table, "outcome", MapChoice())
-    assert [axes.get_title(loc="left") for axes in panels_of(figure)] == [
-        f"Outcome; mu static {mu}" for mu in (0.2, 0.3, 0.4)
-    ]
+    titles = [axes.get_title(loc="left") for axes in panels_of(figure)]
+    assert titles == [f"Outcome; mu static {mu}" for mu in (0.2, 0.3, 0.4)]
     assert len(panels_of(sweep_map(table_of(FREQUENCY, MU, PEAK, copies=True), "outcome", MapChoice()))) == 6
     fixed = sweep_map(table, "outcome", MapChoice(fixed={"contact.mu_static": 0.3}))
     assert len(panels_of(fixed)) == 1
     turned = sweep_map(table, "outcome", MapChoice(x="contact.mu_static", y="motion.peak_acceleration_m_s2"))
     assert len(panels_of(turned)) == 5
     assert colours_of(panels_of(turned)[0]).shape == (4, 3, 4)
-
-
-def test_a_cell_stands_where_its_axes_say():
-    table = table_of(FREQUENCY, PEAK)
-    colours = colours_of(panels_of(sweep_map(table, "rotation", MapChoice()))[0])
-    assert colours.shape == (4, 5, 4)
-    cell = 3 * 4 + 1  # frequency 8, peak 2
-    assert tuple(colours[1, 3]) == pytest.approx(
-        matplotlib.colormaps["viridis"](table["rotation_ratio"][cell])
-    )
 
 
 @pytest.mark.parametrize("case", ["seed_stack_plateau", "my-stack"])

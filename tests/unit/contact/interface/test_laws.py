@@ -32,12 +32,10 @@ def test_normal_tangents_are_derivatives(penetration, share):
     rate = share * penetration / STEP  # share 1 divides the touching point from the one long closed
     force, by_penetration, by_rate = normal(penetration, rate)
     assert force > 0.0
-    assert by_penetration == pytest.approx(
-        central_difference(lambda p: normal(p, rate)[0], penetration), rel=1e-8
-    )
-    assert by_rate == pytest.approx(
-        central_difference(lambda v: normal(penetration, v)[0], rate), rel=1e-8, abs=1e-6 * DAMPING
-    )
+    difference = central_difference(lambda p: normal(p, rate)[0], penetration)
+    assert by_penetration == pytest.approx(difference, rel=1e-8)
+    difference = central_difference(lambda v: normal(penetration, v)[0], rate)
+    assert by_rate == pytest.approx(difference, rel=1e-8, abs=1e-6 * DAMPING)
 
 
 @given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0), st.floats(1e-7, 1e-1))
@@ -57,15 +55,6 @@ def test_a_floor_that_crushes_bears_the_cap_and_no_more(share, penetration, rate
     assert capped == (elastic if elastic[0] < cap else (cap, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("rate", [-2.0, 2.0, 20.0])  # leaving, entering, and within its first step
-def test_the_cap_bounds_the_spring_and_the_dashpot_together(rate):
-    spring, whole = STIFFNESS * 1e-2, normal(1e-2, rate)[0]
-    cap = (spring + whole) / 2.0
-    assert (
-        laws.normal_force(1e-2, rate, STIFFNESS, DAMPING, cap, STEP)[0] == min(whole, cap) != min(spring, cap)
-    )
-
-
 @pytest.mark.parametrize("penetration", DECADES)
 def test_the_force_is_continuous_where_the_dashpot_takes_over(penetration):
     rate = penetration / STEP
@@ -81,19 +70,6 @@ def test_return_mapping_stays_in_the_cone_and_moves_no_admissible_force(trial, l
         assert (force, by_trial, by_limit) == (trial, 1.0, 0.0)
     else:
         assert (force, by_trial, by_limit) == (math.copysign(limit, trial), 0.0, math.copysign(1.0, trial))
-
-
-@pytest.mark.parametrize("limit", 10.0 ** np.arange(-3.0, 7.0))
-@pytest.mark.parametrize("share", [-30.0, -1.01, -0.99, -1e-3, 1e-3, 0.99, 1.01, 30.0])
-def test_return_mapping_tangents_are_derivatives(limit, share):
-    trial = share * limit
-    _, by_trial, by_limit = laws.stick_friction(trial, limit)
-    assert by_trial == pytest.approx(
-        central_difference(lambda t: laws.stick_friction(t, limit)[0], trial), abs=1e-9
-    )
-    assert by_limit == pytest.approx(
-        central_difference(lambda m: laws.stick_friction(trial, m)[0], limit), abs=1e-9
-    )
 
 
 @pytest.mark.parametrize("steps", [1e-3, 0.1, 1.0, 5.0])

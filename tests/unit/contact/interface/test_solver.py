@@ -235,12 +235,7 @@ def test_slopes_are_minus_the_derivatives_of_the_laws(friction):
                     work.point[:, direction] += sign * delta
                     work.velocity[:, direction] += problem.slope * sign * delta
                 evaluate_laws(
-                    problem.contact,
-                    problem.step,
-                    problem.slope,
-                    problem.start,
-                    problem.stick,
-                    work,
+                    problem.contact, problem.step, problem.slope, problem.start, problem.stick, work
                 )
                 laws.append(work.law.copy())
                 if direction is None:
@@ -267,11 +262,8 @@ def test_factors_of_an_earlier_step_give_the_same_forces():
         count, work = problem.attempt()
         if count < 0:
             continue
-        turned = replace(
-            problem,
-            compliance=problem.compliance * (1.0 + 1e-4),
-            free=problem.free * (1.0 + 1e-6),
-        )
+        compliance, free = problem.compliance * (1.0 + 1e-4), problem.free * (1.0 + 1e-6)
+        turned = replace(problem, compliance=compliance, free=free)
         before = work.matrix.copy()
         work.free[:], work.compliance[:] = turned.free, turned.compliance
         again = solve_contact(turned.contact, turned.step, turned.slope, turned.start, turned.stick, work)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from floors import integrated
 from scipy.interpolate import CubicSpline
 
 from contact.motion.base_motion import (
@@ -21,9 +21,8 @@ PERIOD = 2.0 * math.pi / OMEGA
 
 
 def tapered(**changes) -> HarmonicMotion:
-    return HarmonicMotion(
-        **{"amplitude": 0.05, "angular_frequency": OMEGA, "duration": 20.0, "ramp_cycles": 2.0, **changes}
-    )
+    plain = {"amplitude": 0.05, "angular_frequency": OMEGA, "duration": 20.0, "ramp_cycles": 2.0}
+    return HarmonicMotion(**plain | changes)
 
 
 MOTIONS = {
@@ -170,26 +169,12 @@ TABLE_TIMES = np.sort(RNG.uniform(0.4, 9.0, 40))
 TABLE_VALUES = RNG.normal(size=40)
 
 
-def integrated(motion: TableMotion, until: float) -> np.ndarray:
-    """Displacement and velocity at `until` by an independent integration from rest, knot by knot."""
-    a, state = motion.accelerations, np.zeros(2)
-    for i in range(motion.times.size - 1):
-        low, high = motion.times[i], min(motion.times[i + 1], until)
-        if high <= low:
-            break
-
-        def rates(t, y):
-            return [y[1], np.interp(t, motion.times, a)]
-
-        state = solve_ivp(rates, (low, high), state, rtol=1e-12, atol=1e-14, method="DOP853").y[:, -1]
-    return state
-
-
 @pytest.mark.parametrize("until", [3.21, 8.5])
 def test_displacement_and_velocity_are_exact_integrals_of_the_acceleration(until):
     motion = TableMotion(times=TABLE_TIMES, values=TABLE_VALUES)
     x, v, a = motion.evaluate(np.array([until]))[:, 0]
-    assert [x, v] == pytest.approx(integrated(motion, until), rel=1e-10, abs=1e-12)
+    exact = integrated(motion.times, motion.accelerations, until)
+    assert [x, v] == pytest.approx(exact, rel=1e-10, abs=1e-12)
     assert a == pytest.approx(np.interp(until, TABLE_TIMES, motion.accelerations), rel=1e-12)
 
 

@@ -39,9 +39,8 @@ def energy(block, side, state):
 
 def test_with_friction_to_spare_it_is_the_rocking_block():
     floor = sine_floor(amplitude=0.1, angular_frequency=8.0)
-    planar = simulate_planar_block(
-        PlanarBlock(body=STACK, mu_static=5.0, mu_kinetic=5.0), floor, duration=8.0
-    )
+    rough = PlanarBlock(body=STACK, mu_static=5.0, mu_kinetic=5.0)
+    planar = simulate_planar_block(rough, floor, duration=8.0)
     rocking = simulate_rocking(STACK, floor, duration=8.0)
     times = np.linspace(0.0, 8.0, 201)
     assert planar.outcome is PlanarMode.ROCK
@@ -77,18 +76,12 @@ def test_free_rocking_slides_at_the_impact_when_friction_is_below_the_need():
 
 
 def test_endless_impacts_end_in_rest_or_in_sliding():
-    still = simulate_planar_block(
-        PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4), still_floor(), duration=20.0, rotation=0.1
-    )
+    stack = PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4)
+    still = simulate_planar_block(stack, still_floor(), duration=20.0, rotation=0.1)
     assert still.states[-1].mode is PlanarMode.REST
     # pushed along on slippery ground, it stops rocking before it stops sliding
-    pushed = simulate_planar_block(
-        PlanarBlock(body=BOX, mu_static=0.1, mu_kinetic=0.1),
-        still_floor(),
-        duration=5.0,
-        rotation=0.02,
-        slip_velocity=2.0,
-    )
+    slippery = PlanarBlock(body=BOX, mu_static=0.1, mu_kinetic=0.1)
+    pushed = simulate_planar_block(slippery, still_floor(), duration=5.0, rotation=0.02, slip_velocity=2.0)
     names = [state.mode for state in pushed.states]
     assert names[-2:] == [PlanarMode.SLIDE, PlanarMode.REST]
 

@@ -13,23 +13,15 @@ from fem.model.model import build_model
 LOOSE = ("container.joints=loose", "container.boxes=3")
 VERTICAL = ("vertical.kind=harmonic", "vertical.amplitude_m=0.01", "vertical.angular_frequency_rad_s=12")
 DURATION = 2.5
+PEAK, RATE = "motion.peak_acceleration_m_s2", "motion.angular_frequency_rad_s"
+SLAB = {"floor.kind": "slab", "floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]}
 MOTIONS = (
-    ({"motion.peak_acceleration_m_s2": 4.0, "motion.angular_frequency_rad_s": 6.928}, REACHED),
-    (
-        {
-            "motion.peak_acceleration_m_s2": 8.0,
-            "motion.angular_frequency_rad_s": 2.0,
-            "contact.mu_static": 0.9,
-        },
-        OVERTURNED,
-    ),
-    ({"motion.peak_acceleration_m_s2": 4.0, "contact.mu_static": 0.3}, REACHED),
+    ({PEAK: 4.0, RATE: 6.928}, REACHED),
+    ({PEAK: 8.0, RATE: 2.0, "contact.mu_static": 0.9}, OVERTURNED),
+    ({PEAK: 4.0, "contact.mu_static": 0.3}, REACHED),
     ({"contact.damping_ratio": 0.5, "contact.normal_penalty_Pa_m": 2e9}, REACHED),
     ({"motion.start": "rest"}, REACHED),
-    (
-        {"floor.kind": "slab", "floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]},
-        REACHED,
-    ),
+    (SLAB, REACHED),
     ({"floor.slope_percent": 2.0}, REACHED),
 )
 

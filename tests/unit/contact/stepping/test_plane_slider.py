@@ -41,9 +41,8 @@ def circle(step, *, amplitude=0.1, rate=7.0, mu=0.2):
     slip = fem.slide_in_plane(times, peak * np.cos(rate * times), peak * np.sin(rate * times), mu_static=mu)
     last = slip[times > 25.0]
     # least squares circle: x^2 + y^2 = 2 x c_x + 2 y c_y + (r^2 - c^2)
-    fit = np.linalg.lstsq(
-        np.column_stack([2.0 * last, np.ones(len(last))]), (last**2).sum(axis=1), rcond=None
-    )
+    columns = np.column_stack([2.0 * last, np.ones(len(last))])
+    fit = np.linalg.lstsq(columns, (last**2).sum(axis=1), rcond=None)
     centre = fit[0]
     return math.sqrt(centre[2] + centre[0] ** 2 + centre[1] ** 2)
 
