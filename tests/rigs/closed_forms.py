@@ -26,11 +26,6 @@ from contact.reference.planar_block import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 
 
-def sticks(*, peak_acceleration: float, mu_static: float, gravity: float) -> bool:
-    """Whether a slider never moves: peak floor acceleration <= mu_s g. Any floor motion."""
-    return abs(peak_acceleration) <= mu_static * gravity
-
-
 def never_stops_ratio(static_ratio: float) -> float:
     """Friction ratio up to which the steady motion slides without stops: 1/sqrt((mu_s/mu_k)^2 + pi^2/4) [-].
 
@@ -67,7 +62,7 @@ def pulse_slip(*, peak: float, duration: float, mu_static: float, mu_kinetic: fl
     V^2/(2 mu_k g) (1 - mu_k g/a0) against the floor's acceleration, V = a0 t0: Newmark (1965), one way.
     Zero where a0 <= mu_s g. The floor keeps the velocity V.
     """
-    if sticks(peak_acceleration=peak, mu_static=mu_static, gravity=gravity):
+    if abs(peak) <= mu_static * gravity:
         return 0.0
     friction = mu_kinetic * gravity
     velocity = abs(peak) * duration
