@@ -14,8 +14,8 @@ from functools import partial
 import closed_forms
 import numpy as np
 import runs
+from closed_forms import first_swing_threshold
 from evidence.findings import analytic, computed
-from first_swing import first_swing_threshold
 from floors import half_sine_pulse, one_sine_pulse
 from verification.checks import Findings, check
 

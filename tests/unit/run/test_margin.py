@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from first_swing import first_swing_threshold
+from closed_forms import first_swing_threshold
 from floors import half_sine_pulse
 
 import fem
