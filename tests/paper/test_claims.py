@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import pytest
 from evidence.findings import at_most
-from evidence.pages import study_lines
+from evidence.pages import Picture, study_lines
 from paper import maps
 from paper.cases import STACK, PaperCase
-from paper.claims import Claim, ClaimFigure, ClaimResult, Conclusion, conclude
+from paper.claims import Claim, ClaimResult, Conclusion, conclude
 from paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
 from paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
 from paper.run import all_claims, check_claims, paper_report
@@ -119,7 +119,7 @@ def test_cells_beside_a_change_of_outcome_or_close_to_falling_are_perturbed():
 
 
 def result(*comparisons):
-    figure, case = ClaimFigure(name="a-figure", caption="c", svg="<svg></svg>"), PaperCase(base="seed_box")
+    figure, case = Picture(name="a-figure", caption="c", svg="<svg></svg>"), PaperCase(base="seed_box")
     return ClaimResult(comparisons=comparisons, reading="as read", figures=[figure], cases=[case])
 
 
@@ -193,7 +193,8 @@ def test_a_second_call_checks_only_undecided_claims_and_force_checks_all(three, 
 @pytest.mark.parametrize("change", ["program", "versions"])
 def test_a_claim_that_another_program_decided_is_checked_again(three, tmp_path, change):
     claims, calls = three
-    document = check_claims(tmp_path, Experiments(), claims=claims[:1])
+    check_claims(tmp_path, Experiments(), claims=claims[:1])
+    document = json.loads((tmp_path / "study.json").read_text())
     entry = document["groups"][0]["statements"][0]
     changed, key = (entry, "program") if change == "program" else (document["versions"], "numpy")
     changed[key] = "another"
