@@ -7,14 +7,13 @@ import pytest
 from floors import half_sine_pulse, sine_floor
 from moreau import Boxes, move_boxes, slide_and_rock
 from rigid_slider import RigidSlider, simulate_sliding
+from runs import BLOCK
 from two_blocks import StackedBlock, TwoBlockStack, simulate_two_blocks
 
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.rigid_block import RigidBlock
 
 pytestmark = pytest.mark.slow  # as what is compared with it
-WHOLE = RigidBlock.homogeneous(width=1.1, height=4.0)
 ONE = Boxes([1.1], [4.0], [10e3])
 OMEGA = 6.928  # of the default motion [rad/s]
 STEP = 5e-4
@@ -33,9 +32,9 @@ def test_one_box_rocks_as_the_event_driven_block():
     found = move_boxes(ONE, shaken(4.0, 6.0), step=STEP, mu_static=0.4)
     floor = sine_floor(amplitude=4.0 / OMEGA**2, angular_frequency=OMEGA)
     exact = simulate_planar_block(
-        PlanarBlock(body=WHOLE, mu_static=0.4, mu_kinetic=0.4), floor, duration=6.0
+        PlanarBlock(body=BLOCK, mu_static=0.4, mu_kinetic=0.4), floor, duration=6.0
     ).largest_rotation
-    assert exact / WHOLE.slenderness_angle == pytest.approx(0.3992, abs=1e-4)
+    assert exact / BLOCK.slenderness_angle == pytest.approx(0.3992, abs=1e-4)
     assert found.max_rotation[0] == pytest.approx(exact, rel=2e-3)
     assert found.max_slip[0] < 2e-5
 

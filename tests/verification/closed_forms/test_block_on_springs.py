@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from block_on_springs import evenly_spaced, next_turning_point
 from closed_forms import peak_after_impacts
+from runs import BLOCK
 
-from contact.reference.rigid_block import RigidBlock
-
-BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 CORNERS = np.array([-0.55, 0.55])
 RELEASED = 0.5 * BLOCK.slenderness_angle
 
