@@ -72,10 +72,9 @@ def case_of(kind: str, foot: float, slenderness: float, model: str) -> Case:
 def measured(case: Case, container: Container, damping_ratio: float, stiffer: float = 1.0) -> str:
     """Restitution of the first impact by the peaks around it; empty where a run fails its audit."""
     try:
-        done = run(case, {"contact.damping_ratio": damping_ratio}, container, stiffer)
+        value = run(case, {"contact.damping_ratio": damping_ratio}, container, stiffer).restitution
     except RunFailedError:
         return ""
-    value = float(done.track.restitution)
     return f"{value:.4f}" if math.isfinite(value) else ""
 
 

@@ -105,6 +105,11 @@ class Finished:
         return outcome_of(self.model)
 
     @property
+    def restitution(self) -> float:
+        """Velocity ratio of the first impact, by the peaks around it."""
+        return float(self.track.restitution)
+
+    @property
     def block(self) -> RigidBlock:
         """The analytic block with the mass, centroid and inertia of the mesh."""
         return block_of(self.model)

@@ -125,7 +125,7 @@ def test_elastic_containers_keep_the_same_share_of_what_their_impact_leaves(sect
     models = ["reduced", "full"] if (kind, section) == ("corners", "solid") else ["reduced"]
     for model in models:
         own, asked = (
-            run(stack(section, support__kind=kind, solver__model=model, **more)).track.restitution
+            run(stack(section, support__kind=kind, solver__model=model, **more)).restitution
             for more in ({}, {"contact__restitution_over_housner": 0.95})
         )
         assert asked / own == pytest.approx(0.95, abs=4e-3)
