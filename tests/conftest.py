@@ -27,7 +27,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Compile before the tests: each worker would compile the same kernels when it first needs them."""
     if "PYTEST_XDIST_WORKER" in os.environ and len(session.items) > WHOLE:
-        import_module("kernels").compile_kernels()  # late: numba takes a second to import
+        import_module("gallery").compile_kernels()  # late: numba takes a second to import
 
 
 @pytest.fixture(scope="session")

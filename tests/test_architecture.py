@@ -2,6 +2,7 @@
 
 import ast
 from collections import Counter
+from collections.abc import Iterator
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -42,26 +43,14 @@ LAYERS = (
 NESTED = {
     package for layer in LAYERS for package in layer if package.count(".") == 2
 }  #: a package in a package
+KERNELS = {"contact.arrays", "contact.jit", "contact.structs"}  #: what any kernel needs
 #: package -> the only packages of a lower layer that it may import, where these are not all
 NARROW = {
     "contact.reference": {"contact.arrays"},
-    "contact.motion": {"contact.arrays", "contact.jit", "contact.structs"},
-    "contact.interface": {
-        "contact.arrays",
-        "contact.jit",
-        "contact.layout",
-        "contact.structs",
-        "contact.motion",
-    },
-    "contact.stepping": {
-        "contact.arrays",
-        "contact.jit",
-        "contact.layout",
-        "contact.structs",
-        "contact.local_arrays",
-        "contact.motion",
-        "contact.interface",
-    },
+    "contact.motion": KERNELS,
+    "contact.interface": KERNELS | {"contact.layout", "contact.motion"},
+    "contact.stepping": KERNELS
+    | {"contact.layout", "contact.local_arrays", "contact.motion", "contact.interface"},
     "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
     "fem": {"fem.runtime", "fem.seismic", "fem.case", "fem.results", "fem.run", "fem.study", "fem.cli"},
@@ -156,9 +145,19 @@ MODULES = {module_of(path): path for path in SOURCES}
 
 
 @cache
-def trees() -> dict[Path, ast.Module]:
-    """The sources as they parse: two seconds, for the worker that asks."""
-    return {path: ast.parse(path.read_text()) for path in SOURCES}
+def tree_of(path: Path) -> ast.Module:
+    """A file as it parses: two seconds for all sources, for the worker that asks."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def nodes(*kinds: type[ast.AST]) -> Iterator[tuple[str, ast.AST]]:
+    """What of these kinds stands in the sources, with the name of its file."""
+    return (
+        (name_of(path), node)
+        for path in SOURCES
+        for node in ast.walk(tree_of(path))
+        if isinstance(node, kinds)
+    )
 
 
 def package_of(module: str) -> str:
@@ -172,7 +171,7 @@ def package_of(module: str) -> str:
 def imported(path: Path) -> frozenset[str]:
     """Full names of what a file imports, at any depth of it, by statement or by string."""
     found = set()
-    for node in ast.walk(trees()[path]):
+    for node in ast.walk(tree_of(path)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -231,11 +230,6 @@ def test_no_folder_imports_itself_by_way_of_others():
             names = of_this_project(MODULES[module])
             graph[module] = {name_of(folder) if name in inside else name for name in names}
         TopologicalSorter(graph).prepare()  # raises CycleError with the circle
-
-
-@cache
-def tree_of(path: Path) -> ast.Module:
-    return trees()[path] if path in trees() else ast.parse(path.read_text(encoding="utf-8"))
 
 
 def folders_of_tests(path: Path) -> set[str]:
@@ -303,8 +297,8 @@ def test_fem_holds_packages_only():
 def test_a_public_class_has_a_name_of_its_own():
     classes = [
         (node.name, name_of(path))
-        for path, tree in trees().items()
-        for node in tree.body
+        for path in SOURCES
+        for node in tree_of(path).body
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
     ]
     counts = Counter(name for name, _ in classes)
@@ -325,10 +319,8 @@ def test_third_party_packages_come_in_by_their_doors():
 def test_imports_stand_at_the_top_of_the_module():
     """The command line loads its commands by import string; nobody imports inside a function."""
     wrong = [
-        f"{name_of(path)}:{inside.lineno}: import inside {type(node).__name__}"
-        for path, tree in trees().items()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef)
+        f"{name}:{inside.lineno}: import inside {type(node).__name__}"
+        for name, node in nodes(ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
         for inside in ast.walk(node)
         if isinstance(inside, ast.Import | ast.ImportFrom)
     ]
@@ -337,11 +329,9 @@ def test_imports_stand_at_the_top_of_the_module():
 
 def test_only_the_command_line_and_the_opening_import_by_string():
     calls = {
-        name_of(path)
-        for path, tree in trees().items()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call)
-        and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__")
+        name
+        for name, call in nodes(ast.Call)
+        if ast.unparse(call.func).split(".")[-1] in ("import_module", "__import__")
     }
     assert not {name for name in calls - LOADING_LATE if not name.startswith("fem/cli/")}
 
@@ -363,12 +353,10 @@ def opens_for_writing(call: ast.Call, name: str) -> bool:
 def test_one_module_writes_and_removes_files():
     """`fem.runtime.own_files` follows no link in a folder; kernels lie in a folder of their own, see `contact.jit`."""
     wrong = [
-        f"{name_of(path)}:{node.lineno}: {ast.unparse(node)[:60]}"
-        for path, tree in trees().items()
-        if name_of(path) not in WRITERS
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call)
-        and opens_for_writing(node, ast.unparse(node.func).split(".")[-1].split("(")[0])
+        f"{name}:{call.lineno}: {ast.unparse(call)[:60]}"
+        for name, call in nodes(ast.Call)
+        if name not in WRITERS
+        and opens_for_writing(call, ast.unparse(call.func).split(".")[-1].split("(")[0])
     ]
     assert not wrong
 
@@ -376,18 +364,16 @@ def test_one_module_writes_and_removes_files():
 def test_only_what_nothing_acts_in_reaches_the_terminal():
     """Everything is printed by `fem.runtime.terminal.say`."""
     wrong = [
-        f"{name_of(path)}:{node.lineno}"
-        for path, tree in trees().items()
-        if name_of(path) != "fem/runtime/terminal.py"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call)
-        and ast.unparse(node.func) in ("print", "sys.stdout.write", "sys.stderr.write")
+        f"{name}:{call.lineno}"
+        for name, call in nodes(ast.Call)
+        if name != "fem/runtime/terminal.py"
+        and ast.unparse(call.func) in ("print", "sys.stdout.write", "sys.stderr.write")
     ]
     assert not wrong
 
 
 def test_every_module_says_what_it_is():
-    assert not [name_of(path) for path, tree in trees().items() if not ast.get_docstring(tree)]
+    assert not [name_of(path) for path in SOURCES if not ast.get_docstring(tree_of(path))]
 
 
 def test_no_room_is_a_lumber_room():

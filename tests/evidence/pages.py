@@ -6,6 +6,7 @@ The pages are templates beside this module; a head of a table that begins with #
 import datetime as dt
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
@@ -35,6 +36,15 @@ TITLES = {
 FIRST = ("refuted", "confirmed within stated bounds", "not computed", "misprint", "confirmed", "remark")
 Row = Mapping[str, Any]  #: of a document
 Document = Mapping[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A figure of a page."""
+
+    name: str  #: of its file, without suffix
+    caption: str
+    svg: str
 
 
 def page_of(

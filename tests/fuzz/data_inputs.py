@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from cases import BLOCK, LEAST
 from hypothesis import strategies as st
 from inputs import SINE, Input, damaged, values_of
 from mesh_writer import mesh_of
@@ -20,11 +21,7 @@ from mesh.files import FORMATS
 Draw = Any
 RUN = ("run", "case.toml", "--out", "out", "-q", "--no-band")
 #: a rigid block on a motion that is put in, for a moment
-CASE = (
-    "[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2000.0\n[contact]\nmu_static = 0.4\n"
-    '[motion]\n{motion}[solver]\nmodel = "rigid"\nduration_s = 0.4\nelement_size_m = 2.0\n'
-    "[output]\nfields_s = 0.0\nfigures = false\n"
-)
+CASE = BLOCK.replace('kind = "none"\n', "{motion}").replace("duration_s = 0.05", "duration_s = 0.4")
 
 
 @st.composite
@@ -33,10 +30,7 @@ def meshes(draw: Draw) -> Input:
     suffix, shell = draw(st.sampled_from(sorted(FORMATS))), draw(st.booleans())
     whole = mesh_of(suffix, shell=shell)
     wall = "wall_m = 0.02" if shell else 'section = "solid"'
-    case = (
-        f"[container]\nwidth_m = 1.1\nheight_m = 1.0\nboxes = 2\nweight_N = 24525.0\n{wall}\n"
-        f'mesh_file = "mesh{suffix}"\n[contact]\nmu_static = 0.4\n[motion]\nkind = "none"\n'
-    )
+    case = LEAST.replace("[contact]", f'boxes = 2\n{wall}\nmesh_file = "mesh{suffix}"\n[contact]')
     content = draw(st.just(whole) | damaged(whole) | damaged(whole) | damaged(whole))
     return Input(
         arguments=("check", "case.toml"), files={"case.toml": case.encode(), f"mesh{suffix}": content}

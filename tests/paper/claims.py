@@ -10,6 +10,7 @@ from enum import Enum
 from typing import Any, Literal, NamedTuple, TypeVar
 
 from evidence.findings import Finding, failures
+from evidence.pages import Picture
 from matplotlib.figure import Figure
 from paper.cases import PaperCase
 from paper.experiments import Experiments, VariantBand
@@ -65,15 +66,6 @@ def outcomes(caption: str, experiments: Experiments, cases: Sequence[PaperCase])
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class ClaimFigure:
-    """A figure of the page."""
-
-    name: str  #: of its file, without suffix
-    caption: str
-    svg: str
-
-
 #: distinguishable without colour vision (Okabe and Ito) and dark enough on white
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")
 HEIGHT = 3.3  #: [inch]
@@ -97,7 +89,7 @@ def draw_curves(
     levels: Mapping[str, float] | None = None,
     log_x: bool = False,
     y_limits: tuple[float, float] | None = None,
-) -> ClaimFigure:
+) -> Picture:
     """Curves over one pair of axes, labelled "x | y"; `levels` are horizontal lines with a name."""
     with house_style():
         figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
@@ -116,7 +108,7 @@ def draw_curves(
         if any(line.label for line in lines):
             figure.legend(loc="outside lower center", ncols=4)
         axes.margins(x=0.02)
-    return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))
+    return Picture(name=name, caption=caption, svg=svg_of(figure))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,7 +121,7 @@ class ClaimResult:
     kind: ClaimKind = "statement"
     cases: Sequence[PaperCase] = ()
     tables: Sequence[ClaimTable] = ()
-    figures: Sequence[ClaimFigure] = ()
+    figures: Sequence[Picture] = ()
     band: VariantBand | None = None
 
     @property
@@ -188,7 +180,7 @@ class Claim:
 
 
 #: what the check of a claim yields, in any order; text is the reading
-Evidence = Iterator[Finding | PaperCase | ClaimTable | ClaimFigure | VariantBand | str]
+Evidence = Iterator[Finding | PaperCase | ClaimTable | Picture | VariantBand | str]
 Kind = TypeVar("Kind")
 
 
@@ -215,7 +207,7 @@ def claim(
                 kind=kind,
                 cases=of(PaperCase),
                 tables=of(ClaimTable),
-                figures=of(ClaimFigure),
+                figures=of(Picture),
                 band=next(iter(of(VariantBand)), None),
             )
 

@@ -5,9 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 from evidence.findings import at_least, at_most
+from evidence.pages import Picture
 from paper import criteria, maps
 from paper.cases import BOX, SHELL, STACK, PaperCase, friction
-from paper.claims import ClaimFigure, Curve, Evidence, claim, draw_curves, outcomes, table
+from paper.claims import Curve, Evidence, claim, draw_curves, outcomes, table
 from paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, PAPER_MU, UPLIFT
 from paper.experiments import Experiments
 
@@ -249,7 +250,7 @@ def _witnesses(outcome_map: maps.OutcomeMap, criterion: criteria.Criterion) -> l
     return [cell.case for cell in first if cell is not None]
 
 
-def _shape_figure(outcome_map: maps.OutcomeMap) -> ClaimFigure:
+def _shape_figure(outcome_map: maps.OutcomeMap) -> Picture:
     frequency = f"{outcome_map.every[0].motion.angular_frequency:g}"
     shapes = np.array(maps.SLENDERNESS)
     return maps.draw_map(

@@ -14,8 +14,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from evidence.pages import Picture
 from paper.cases import FOR_MAPS, SHELL, STACK, PaperCase, friction
-from paper.claims import ClaimFigure
 from paper.criteria import Contingency, Criterion, MapMotion, contingency, motion_of
 from paper.dimensions import ANGULAR_FREQUENCY, BOX_WEIGHT, FREQUENCY_PARAMETER, PAPER_MU, PLATEAU_PEAK, WIDTH
 from paper.experiments import Experiments, stands
@@ -225,7 +225,7 @@ def _computed(
     return OutcomeMap(title=title, rigid=rigid, x=x, y=y, every=cells)
 
 
-def draw_map(name: str, caption: str, outcome_map: OutcomeMap, curves: Sequence[MapCurve]) -> ClaimFigure:
+def draw_map(name: str, caption: str, outcome_map: OutcomeMap, curves: Sequence[MapCurve]) -> Picture:
     """Outcome of every cell by colour, unsure cells hatched, curves on top."""
     words = list(OUTCOME_COLOURS)
     panel = Panel(
@@ -237,4 +237,4 @@ def draw_map(name: str, caption: str, outcome_map: OutcomeMap, curves: Sequence[
         curves=curves,
     )
     figure = draw_heat_map(outcome_map.x, outcome_map.y, [panel], colours=OUTCOME_COLOURS)
-    return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))
+    return Picture(name=name, caption=caption, svg=svg_of(figure))

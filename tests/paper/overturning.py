@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from closed_forms import sustained_sine_threshold_slender
+from closed_forms import first_swing_threshold, sustained_sine_threshold_slender
 from evidence.findings import at_least, at_most
-from first_swing import first_swing_threshold
 from floors import sine_floor
 from paper.cases import FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK
 from paper.claims import Curve, Evidence, claim, draw_curves, table

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 
+from closed_forms import first_swing_threshold
 from evidence.findings import at_most, equal
-from first_swing import first_swing_threshold
 from floors import sine_floor
 from paper.cases import PLATEAU, RIGID, SHELL, STACK, PaperCase
 from paper.claims import Curve, Evidence, claim, draw_curves, outcomes, table

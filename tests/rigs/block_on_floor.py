@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from contacts import contact_of
 
 from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance, standing
+from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion
@@ -28,6 +28,28 @@ from contact.stepping.state import ROW_ROTATION, ROW_SLIP, Control, RunState, ma
 GRAVITY = 9.81
 Motion = FloorMotion | HarmonicMotion | PulseMotion | NoMotion
 LOOSE = 1e30  #: a tolerance that never shortens a step
+
+
+def contact_of(springs: FloatArray, *, force_scale: float, mu: float = 0.0, **named: Any) -> Contact:
+    """Contact points with the plainest laws: springs (n,) [N/m], one coefficient of friction, no dashpots, no caps.
+
+    What a test needs besides, it names.
+    """
+    n = springs.size
+    plain: dict[str, Any] = {
+        "normal_stiffness": springs,
+        "tangential_stiffness": springs.copy(),
+        "cap": np.full(n, math.inf),
+        "mu_static": np.full(n, mu),
+        "mu_kinetic": np.full(n, mu),
+        "stribeck_velocity": 0.0,
+        "friction": ELASTIC_STICK,
+        "regularisation_velocity": 1e-3,
+        "force_scale": force_scale,
+        "resolution": 1e-15,
+    }
+    zeros = {name: np.zeros(n) for name in ("cap_growth", "relaxation_time", "weakening", "camber")}
+    return Contact(**plain | zeros | named)
 
 
 @dataclass(frozen=True, kw_only=True)

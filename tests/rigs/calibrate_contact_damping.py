@@ -18,7 +18,7 @@ import sys
 from itertools import product
 from pathlib import Path
 
-from runs import RunFailedError, finish
+from runs import RunFailedError, run
 
 from contact.interface.penalty import contact_frequency
 from fem.case.case import Case, case_from
@@ -71,12 +71,8 @@ def case_of(kind: str, foot: float, slenderness: float, model: str) -> Case:
 
 def measured(case: Case, container: Container, damping_ratio: float, stiffer: float = 1.0) -> str:
     """Restitution of the first impact by the peaks around it; empty where a run fails its audit."""
-    model = build_model(case.with_values({"contact.damping_ratio": damping_ratio}), container)
-    if stiffer != 1.0:
-        penalty = {"contact.normal_penalty_Pa_m": stiffer * model.penalty}
-        model = build_model(model.case.with_values(penalty), container)
     try:
-        value = float(finish(model).track.restitution)
+        value = run(case, {"contact.damping_ratio": damping_ratio}, container, stiffer).restitution
     except RunFailedError:
         return ""
     return f"{value:.4f}" if math.isfinite(value) else ""

@@ -19,16 +19,14 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from runs import bisected
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarMode
 from contact.reference.rigid_block import RigidBlock
-
-
-def sticks(*, peak_acceleration: float, mu_static: float, gravity: float) -> bool:
-    """Whether a slider never moves: peak floor acceleration <= mu_s g. Any floor motion."""
-    return abs(peak_acceleration) <= mu_static * gravity
+from contact.reference.rocking import simulate_rocking
 
 
 def never_stops_ratio(static_ratio: float) -> float:
@@ -67,7 +65,7 @@ def pulse_slip(*, peak: float, duration: float, mu_static: float, mu_kinetic: fl
     V^2/(2 mu_k g) (1 - mu_k g/a0) against the floor's acceleration, V = a0 t0: Newmark (1965), one way.
     Zero where a0 <= mu_s g. The floor keeps the velocity V.
     """
-    if sticks(peak_acceleration=peak, mu_static=mu_static, gravity=gravity):
+    if abs(peak) <= mu_static * gravity:
         return 0.0
     friction = mu_kinetic * gravity
     velocity = abs(peak) * duration
@@ -274,6 +272,32 @@ def velocity_step_threshold(block: RigidBlock) -> float:
     kick_per_velocity = block.centroid_height / (block.inertia_ratio * block.radius**2)
     inertia = block.inertia_ratio * block.radius**2
     return math.sqrt(2.0 * block.overturning_energy / inertia) / kick_per_velocity
+
+
+def first_swing_threshold(
+    block: RigidBlock,
+    floor_of_peak: Callable[[float], FloorAcceleration],
+    *,
+    low: float,
+    high: float,
+    duration: float,
+    relative_tolerance: float = 1e-9,
+) -> float:
+    """Peak floor acceleration from which the block overturns before any impact [m/s2].
+
+    Bisection on the exact motion of the first swing only, where overturning is monotone in the peak of the
+    motions considered here; with impacts there are safe islands above it and no single threshold. The peaks `low` and
+    `high` [m/s2] do not, and do, overturn; the duration [s] must do to overturn or to come back.
+    """
+
+    def overturns(peak: float) -> bool:
+        motion = simulate_rocking(block, floor_of_peak(peak), duration=duration, stop_at_impact=True)
+        return motion.outcome is PlanarMode.OVERTURNED
+
+    peak = bisected(overturns, low, high, resolution=relative_tolerance)
+    if math.isnan(peak):
+        raise ValueError(f"first swing: no change from standing to overturned between {low} and {high} m/s2")
+    return peak
 
 
 def _threshold(frequency_ratio: float, growth: Callable[[float, float, float], float]) -> float:

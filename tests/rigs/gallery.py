@@ -1,4 +1,4 @@
-"""Computed runs that many tests read: each once a session, by the worker that asks first, in a folder nobody changes.
+"""What a session makes once: computed runs that many tests read, each in a folder nobody changes, and all kernels.
 
 The fixture `gallery` of `conftest` gives folders to read, `gallery("rigid")`; opened, `gallery.run("rigid")`; or a copy
 to change, `gallery.copy("rigid", tmp_path)`. A run that two modules need is a line in RUNS; a study, or anything else,
@@ -7,15 +7,20 @@ is a function in MADE that fills the folder it is given.
 
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from filelock import FileLock
+from filelock import FileLock, Timeout
 from small_sweep import sweep_in
 
+from contact.jit import cache_folder
 from fem.case.case import load_case
+from fem.model.model import build_model
 from fem.results.reader import OpenedRun, open_run
+from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
+from fem.run.simulation import simulate
 from fem.runtime.progress import Reporter
 from fem.study.sweep import run_sweep
 
@@ -89,3 +94,33 @@ class Gallery:
 def _computed(folder: Path, name: str, changes: tuple[str, ...], options: dict[str, bool]) -> None:
     case = load_case(name, changes)
     run_case(case, case_text=case.text, folder=folder, options=RunOptions(**options), reporter=Strict())
+
+
+LOOSE = ("container.joints=loose", "container.boxes=3")
+STOP = "stop=[{side = 'right', height_m = 0.1, gap_m = 0.02, stiffness_N_m = 1e8}]"
+#: cases that step with different kernels, the longest compilation first
+STEPPED = {
+    "loose": LOOSE,
+    "linked boxes": ("solver.model=rigid", *LOOSE, STOP),
+    "corners": (),
+    "rigid": ("solver.model=rigid",),
+    "full loose": (
+        "solver.model=full",
+        "container.joints=loose",
+        "container.boxes=2",
+    ),  # compiled for so many boxes
+    "full": ("solver.model=full",),
+    "linked": ("solver.model=rigid", STOP),
+}
+
+
+def compile_kernels() -> None:
+    """Compile those that no other worker is compiling and no earlier suite has compiled, then wait for the others."""
+    for wait in (0.0, -1.0):
+        for name, changes in STEPPED.items():
+            place = cache_folder() / name
+            with suppress(Timeout), FileLock(f"{place}.lock", timeout=wait):
+                if not (done := place.with_suffix(".compiled")).exists():
+                    model = build_model(load_case("seed_box", ["solver.duration_s=0.02", *changes]))
+                    simulate(model, Recorder(model))
+                    done.touch()

@@ -12,7 +12,7 @@ rigid batch is measured against.
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numba
@@ -26,30 +26,24 @@ CLOSED = 1e-8  #: gap of a contact that is closed but for rounding [m]
 LARGEST_ROTATION = 1.2  #: of a box that stands [rad]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Boxes:
-    """Boxes on one axis, from the floor up; arrays of shape (n,)."""
+class Boxes(NamedTuple):
+    """Homogeneous boxes on one axis, from the floor up."""
 
-    half_width: FloatArray  #: [m]
-    height: FloatArray  #: [m]
-    mass: FloatArray  #: [kg]
-    centroid_height: FloatArray  #: above the bottom of each [m]
-    inertia: FloatArray  #: about the mass centre [kg m2]
+    width: Sequence[float]  #: [m]
+    height: Sequence[float]  #: [m]
+    mass: Sequence[float]  #: [kg]
 
-    @classmethod
-    def homogeneous(cls, widths: FloatArray, heights: FloatArray, masses: FloatArray) -> "Boxes":
-        """Homogeneous rectangles."""
-        width, height, mass = (np.array(one, dtype=float) for one in (widths, heights, masses))
-        inertia = mass * (width**2 + height**2) / 12.0
-        return cls(
-            half_width=0.5 * width, height=height, mass=mass, centroid_height=0.5 * height, inertia=inertia
-        )
+    @property
+    def inertia(self) -> FloatArray:
+        """About the mass centres, shape (n,) [kg m2]."""
+        width, height, mass = map(np.array, self)
+        return np.asarray(mass * (width**2 + height**2) / 12.0)
 
     @property
     def upright(self) -> FloatArray:
         """Places of the mass centres and rotations at rest, shape (n, 3)."""
-        bottom = np.concatenate([[0.0], np.cumsum(self.height)[:-1]])
-        return np.stack([0.0 * bottom, bottom + self.centroid_height, 0.0 * bottom], axis=1)
+        bottom = np.array([0.0, *np.cumsum(self.height)[:-1]])
+        return np.stack([0.0 * bottom, bottom + 0.5 * np.array(self.height), 0.0 * bottom], axis=1)
 
 
 class BoxMotion(NamedTuple):
@@ -83,16 +77,15 @@ def move_boxes(
             slide one way, kinetic from the next step until they do not. No mu_kinetic: mu_static.
         every: steps between samples.
     """
-    n = boxes.mass.size
+    n = len(boxes.mass)
     static = np.full(n, mu_static, dtype=float)
     kinetic = static if mu_kinetic is None else np.full(n, mu_kinetic, dtype=float)
     q, v = boxes.upright, np.zeros((n, 3))
     samples = along.size // every + 1
     places, slips = np.full((samples, n, 3), np.nan), np.full((samples, n), np.nan)
     most = np.zeros((n, 2))
-    size = np.stack(
-        [boxes.half_width, boxes.height, boxes.centroid_height, boxes.mass, boxes.inertia], axis=1
-    )
+    width, height, mass = map(np.array, boxes)
+    size = np.stack([0.5 * width, height, 0.5 * height, mass, boxes.inertia], axis=1)
     fell_at, fell_box = _advance(
         size, static, kinetic, gravity, np.asarray(along, float), step, every, q, v, places, slips, most
     )

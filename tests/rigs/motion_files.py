@@ -7,12 +7,10 @@ import numpy as np
 STEP = 0.02  #: [s]
 
 
-def write_motion(
-    folder: Path, name: str, *, frequency: float, peak: float = 3.0, length: float = 1.0, step: float = STEP
-) -> str:
-    """A sine under an envelope of one sine, which has neither its mean nor its ends at fault; its name."""
-    times = np.arange(0.0, length + 0.5 * step, step)
-    shape = np.sin(2.0 * np.pi * frequency * times) * np.sin(np.pi * times / length) ** 2
+def write_motion(folder: Path, name: str, *, frequency: float, peak: float = 3.0) -> str:
+    """A sine of 1 s under an envelope of one sine, which has neither its mean nor its ends at fault; its name."""
+    times = np.arange(0.0, 1.0 + 0.5 * STEP, STEP)
+    shape = np.sin(2.0 * np.pi * frequency * times) * np.sin(np.pi * times) ** 2
     values = peak * shape / np.abs(shape).max()
     lines = [f"{time:.6f},{value:.9f}" for time, value in zip(times, values, strict=True)]
     (folder / name).write_text("\n".join(["time_s,acceleration_m_s2", *lines, ""]), encoding="utf-8")

@@ -41,6 +41,7 @@ STACK = case_from(
     }
 )
 SLENDERNESS = math.atan2(1.1, 4.0)  #: of the stack [rad]
+BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)  #: the stack as an analytic reference
 TILTED: Keys = {"initial.rotation_rad": 0.5 * SLENDERNESS}
 BOX = STACK.with_values({"container.height_m": 1.0, "container.weight_N": 24525.0})
 #: makes the stack an elastic solid with 20 modes
@@ -104,14 +105,28 @@ class Finished:
         return outcome_of(self.model)
 
     @property
+    def restitution(self) -> float:
+        """Velocity ratio of the first impact, by the peaks around it."""
+        return float(self.track.restitution)
+
+    @property
     def block(self) -> RigidBlock:
         """The analytic block with the mass, centroid and inertia of the mesh."""
         return block_of(self.model)
 
 
-def run(case: Case, values: Mapping[str, Any] | None = None, container: Container | None = None) -> Finished:
-    """Compute a case with some keys changed."""
-    return finish(build_model(case.with_values(values) if values else case, container))
+def run(
+    case: Case,
+    values: Mapping[str, Any] | None = None,
+    container: Container | None = None,
+    stiffer: float = 1.0,
+) -> Finished:
+    """Compute a case with some keys changed; `stiffer` multiplies the penalty that it has."""
+    model = build_model(case.with_values(values) if values else case, container)
+    if stiffer != 1.0:
+        penalty = {"contact.normal_penalty_Pa_m": stiffer * model.penalty}
+        model = build_model(model.case.with_values(penalty), model.container)
+    return finish(model)
 
 
 def finish(model: Model) -> Finished:
@@ -203,16 +218,6 @@ def stack(section: str = "solid", **changes: Any) -> Case:
     """The stack of a section, with dotted keys changed; `__` in place of the dot."""
     changed = {key.replace("__", "."): value for key, value in changes.items()}
     return FOUR.with_values(SECTIONS[section] | changed)
-
-
-def velocity_ratio(run: Finished) -> float:
-    """Of the first impact, from the heights of the mass centre at the peaks around it (rigid kinematics)."""
-    rotation, angle = run.history["rotation_rad"], run.model.static.slenderness_angle
-    released = abs(float(rotation[0]))
-    peak = float(np.max(-np.sign(rotation[0]) * rotation))  # on the other side, of at most two half cycles
-    return math.sqrt(
-        (math.cos(angle - peak) - math.cos(angle)) / (math.cos(angle - released) - math.cos(angle))
-    )
 
 
 def difference(one: Finished, other: Finished, *, until: float = math.inf) -> float:

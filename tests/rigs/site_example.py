@@ -1,6 +1,8 @@
-"""A result of `assess` as its page shows it, without a run: container K1 on site S1, motions of shaped noise.
+"""Container K1 on site S1, and a result of `assess` of them as its page shows it, without a run.
 
-`site_result.json` holds it in a building, but for its runs, which follow a pattern, and the methods beside them.
+K1: 1.1 m wide and deep, 4 m high, homogeneous, 10 t, mu 0.4 static, 0.2 kinetic. S1: type 1, ground D, a_g S 2.4 m/s2.
+The tests hold hand-checked numbers of the simplified methods on them. The motions are shaped noise; `site_result.json`
+holds the result in a building, but for its runs, which follow a pattern, and the methods beside them.
 """
 
 import json
@@ -11,11 +13,19 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from running_example import SITE
 
+from contact.reference.rigid_block import RigidBlock
 from fem.results.json_block import to_json
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.body import FloorAction, LooseBody
 from fem.site.methods import site_methods
 from fem.site.result import MOTIONS, RESULT_FILE, SiteBody, SiteMotion, SiteResult, SiteRun
+
+SITE = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
+#: 0.06 (S_alpha S_beta)^0.55 with the plateau and the value at 1 s
+PEAK_VELOCITY = 0.06 * (6.0 * 4.8) ** 0.55
+ACTION = FloorAction.on_ground(SITE, PEAK_VELOCITY)
+SLIP = 0.1  #: the clearance [m]
 
 STEP = 0.01
 FOUND = {"outcome": "rock", "rotation_ratio": 0.1, "max_slip_m": 0.01}
@@ -29,6 +39,11 @@ SENTENCES = {
     True: "Fulfilled under the rule below: none of 112 runs overturned.",
     False: "Not fulfilled under the rule below: {} of 112 runs overturned.",
 }
+
+
+def k1(*, mu_static: float = 0.4, mu_kinetic: float = 0.2) -> LooseBody:
+    block, size = RigidBlock.homogeneous(width=1.1, height=4.0), {"width": 1.1, "height": 4.0, "depth": 1.1}
+    return LooseBody(block=block, **size, mass=10_000.0, mu_static=mu_static, mu_kinetic=mu_kinetic)
 
 
 def noise(number: int, peak: float) -> np.ndarray:

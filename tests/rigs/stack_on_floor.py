@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from block_on_floor import GRAVITY, Block, Motion, limits_of
-from contacts import contact_of
+from block_on_floor import GRAVITY, Block, Motion, contact_of, limits_of
 
 from contact.arrays import FloatArray
 from contact.motion.base_motion import NoMotion

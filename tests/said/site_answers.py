@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from running_example import ACTION, k1
-from site_example import RUN, example
+from site_example import ACTION, RUN, example, k1
 from small_site import SITE
 
 from fem.case.validation import CaseError

@@ -4,14 +4,12 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
+from meshes import grid_mesh
 from runs import STACK
 
 from fem.case.case import Case
 from fem.model.container import Container, discretise
-from mesh.container import ContainerMesh, grid_quads
-from mesh.elevation import Elevation
 from mesh.errors import MeshError
-from mesh.region import Region
 
 ROUGH = 2.0  #: friction with which no specimen slides
 LAYERS = 3  #: of one density each; as many as there are conditions
@@ -55,18 +53,9 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float, columns: int 
             f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
             f"{inertia_ratio:g} m2 times its mass"
         )
-    quads = grid_quads(columns, LAYERS)
     across = np.linspace(-0.5 * width, 0.5 * width, columns + 1)
-    return discretise(
-        case,
-        ContainerMesh(
-            elevation=Elevation(np.array([[x, z] for z in levels for x in across]), quads),
-            region=np.full(len(quads), int(Region.SOLID)),
-            box=np.zeros(len(quads), dtype=np.int64),
-            thickness=np.full(len(quads), case.container.depth_m),
-            areal_density=np.repeat(mass * shares / (width * layer), columns),
-        ),
-    )
+    density = np.repeat(mass * shares / (width * layer), columns)
+    return discretise(case, grid_mesh(across, levels, depth=case.container.depth_m, areal_density=density))
 
 
 def cross_validated(

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
+from evidence.pages import Picture
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from validation.experiments import Picture
 from validation.shake_tests import ShakeTest
 from validation.vote import BoolArray
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from evidence.findings import Finding, failures
+from evidence.pages import Picture
 
 from fem.runtime.identity import versions
 
@@ -17,15 +18,6 @@ from fem.runtime.identity import versions
 KEYS = {"quantity": "what", "measured": "reference", "predicted": "value", "passed": "met"} | {
     name: name for name in ("criterion", "note")
 }
-
-
-@dataclass(frozen=True, kw_only=True)
-class Picture:
-    """A figure of the page."""
-
-    name: str
-    caption: str
-    svg: str
 
 
 @dataclass(frozen=True, kw_only=True)

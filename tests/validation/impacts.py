@@ -45,7 +45,7 @@ def restitution_ratio(
         solver__duration_s=8.0 / rate,
         **({} if modulus is None else {"floor__youngs_modulus_Pa": modulus}),
     )
-    ratio = float(run(case).track.restitution) / (1.0 - 1.5 * math.sin(angle) ** 2)
+    ratio = run(case).restitution / (1.0 - 1.5 * math.sin(angle) ** 2)
     return ratio if math.isfinite(ratio) else 0.0  # sunk in so far that it does not swing to the other side
 
 

@@ -11,13 +11,14 @@ from functools import cache
 from itertools import product
 
 import numpy as np
+from block_on_floor import piecewise_motion
 from evidence.findings import prediction
+from evidence.pages import Picture
 from runs import with_motion
 from validation import drawings
 from validation.bodies import cross_validated, rigid_case
-from validation.experiments import Experiment, Picture, Predictor, measured_table
+from validation.experiments import Experiment, Predictor, measured_table
 
-from contact.motion.kernel import PIECEWISE, as_floor_motion
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.model import Model, build_model
@@ -150,14 +151,6 @@ def _block(size: BlockSize) -> tuple[Case, Container]:
 def _kicked(case: Case, container: Container, kick: Kick) -> Model:
     """The block at rest on a base that reaches its speed in a millisecond, and stops as quickly after its gap."""
     stop, rate = kick.gap / kick.speed, kick.speed / RISE_S
-    times = np.array([0.0, RISE_S, stop, stop + RISE_S])
-    part = 0.5 * kick.speed * RISE_S  # of the gap, while the speed changes
-    rows = [
-        [0.0, 0.0, 0.0, 0.0],
-        [0.0, 0.0, rate, 0.0],
-        [part, kick.speed, 0.0, 0.0],
-        [kick.gap - part, kick.speed, -rate, 0.0],
-        [kick.gap, 0.0, 0.0, 0.0],
-    ]
-    motion = as_floor_motion(PIECEWISE, breaks=times, coefficients=np.array(rows))
-    return with_motion(build_model(case, container), motion, tuple(times[1:].tolist()))
+    times = [0.0, RISE_S, stop, stop + RISE_S]
+    motion = piecewise_motion(times, [rate, 0.0, -rate, 0.0])
+    return with_motion(build_model(case, container), motion, tuple(times[1:]))

@@ -9,8 +9,7 @@ from collections import Counter
 import closed_forms as overturning
 import numpy as np
 import pytest
-from closed_forms import peak_after_impacts, quarter_period, steady_stroke
-from first_swing import first_swing_threshold
+from closed_forms import first_swing_threshold, peak_after_impacts, quarter_period, steady_stroke
 from floors import half_sine_pulse, one_sine_pulse, rectangular_pulse, sine_floor, still_floor
 from rigid_slider import RigidSlider, simulate_sliding
 from verification.overturning import initiation_grid

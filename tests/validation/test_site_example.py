@@ -8,7 +8,7 @@ sign of the vertical 0.252; at 1.75 and 2.0 one of seven, with the vertical up t
 import numpy as np
 import pytest
 from case_rows import run_cases
-from running_example import SITE, k1
+from site_example import SITE, k1
 
 from contact.motion.table import TableMotion
 from contact.reference.planar_block import PlanarMode

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from contacts import contact_of
+from block_on_floor import contact_of
 from runs import STACK, with_steps_of
 
 from contact.interface.equilibrium import Stance

@@ -10,8 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from evidence.findings import Convergence, analytic, computed, printed
-from loads import edge_load, force_and_energy, internal_force, tangent
-from meshes import mapped_mesh
+from meshes import edge_load, force_and_energy, internal_force, mapped_mesh, tangent
 from scipy.sparse.linalg import eigsh, spsolve
 from verification.checks import Findings, check
 from verification.manufactured import NewtonError, dynamic_error, static_error

@@ -12,8 +12,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from loads import area_load, edge_load, internal_force, l2_distance, tangent
-from meshes import mapped_mesh
+from meshes import area_load, edge_load, internal_force, l2_distance, mapped_mesh, tangent
 from scipy.sparse.linalg import spsolve
 from verification.bodies import Flight, free_run
 

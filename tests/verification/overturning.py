@@ -14,20 +14,18 @@ from functools import partial
 import closed_forms
 import numpy as np
 import runs
+from closed_forms import first_swing_threshold
 from evidence.findings import analytic, computed
-from first_swing import first_swing_threshold
 from floors import half_sine_pulse, one_sine_pulse
 from verification.checks import Findings, check
 
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
-from contact.reference.rigid_block import RigidBlock
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
 from fem.results.outcome import Outcome
 
-BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
-RATE, UPLIFT = BLOCK.frequency_parameter, BLOCK.uplift_acceleration
+RATE, UPLIFT = runs.BLOCK.frequency_parameter, runs.BLOCK.uplift_acceleration
 #: the corner does not slide under any motion
 ROUGH: runs.Keys = {"contact.mu_static": 5.0, "solver.duration_s": 12.0, "output.history_s": 0.05}
 #: name -> keys, tolerance
@@ -98,7 +96,7 @@ def pulses() -> Findings:
 
         low, high = 0.9 * slender * UPLIFT, 1.15 * slender * UPLIFT
         peak = first_swing_threshold(
-            BLOCK, toward_minus_x, low=low, high=high, duration=20.0, relative_tolerance=1e-6
+            runs.BLOCK, toward_minus_x, low=low, high=high, duration=20.0, relative_tolerance=1e-6
         )
         exact = peak / UPLIFT
         source = f"event-driven block; slender {slender:.5f}"
@@ -112,7 +110,7 @@ def pulses() -> Findings:
 @check("overturning", "overturning by a rectangular pulse")
 def rectangular() -> Findings:
     """Shortest rectangular pulse of twice the uplift acceleration that overturns."""
-    exact = closed_forms.rectangular_pulse_duration(BLOCK, 2.0 * UPLIFT)
+    exact = closed_forms.rectangular_pulse_duration(runs.BLOCK, 2.0 * UPLIFT)
     compared = "shortest length that overturns without impact [s]"
     source = "work of the pulse = g R (1 - cos al); exact quadrature"
     for name, (values, tolerance) in MODELS.items():
@@ -124,7 +122,7 @@ def rectangular() -> Findings:
 @check("overturning", "overturning by a velocity step")
 def velocity_step() -> Findings:
     """Sudden floor velocity that overturns; here the container gets it, relative to the floor."""
-    exact = closed_forms.velocity_step_threshold(BLOCK)
+    exact = closed_forms.velocity_step_threshold(runs.BLOCK)
     compared = "least velocity that overturns without impact [m/s]"
     source = "kinetic energy of the kick = M g R (1 - cos al)"
     for name, (values, tolerance) in MODELS.items():

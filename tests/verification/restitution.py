@@ -14,7 +14,7 @@ import numpy as np
 from block_on_springs import evenly_spaced, next_turning_point
 from evidence.findings import Convergence, analytic, computed
 from floors import one_sine_pulse
-from runs import GRAVITY, SOLID, STACK, Finished, Keys, finish, pulse, run
+from runs import GRAVITY, SOLID, STACK, Keys, pulse, run
 from verification.checks import MESH, Findings, check
 from verification.rocking import turning_points
 
@@ -22,8 +22,7 @@ from contact.interface.penalty import contact_frequency
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.case.case import Case
-from fem.model.container import Container, discretise
-from fem.model.model import build_model
+from fem.model.container import discretise
 
 RIGID_TOLERANCE, SOLID_TOLERANCE = 5e-3, 1e-2
 DENSITY = 2066.0  #: [kg/m3]
@@ -37,7 +36,7 @@ def slendernesses() -> Findings:
     """Rigid blocks on corners."""
     known = {1.5: 0.5385, 2.0: 0.7, 2.5: 0.7931, 3.6364: 0.8945, 4.0: 0.91176, 10.0: 0.98515}
     for lam, exact in known.items():
-        case, ratio = f"rigid block, c/a = {lam:g}", peaks(released(block(lam)))
+        case, ratio = f"rigid block, c/a = {lam:g}", run(block(lam)).restitution
         yield housner(case, COMPARED, ratio, exact, absolute=RIGID_TOLERANCE)
 
 
@@ -46,7 +45,7 @@ def penalty_limit() -> Findings:
     """The error of the rigid block's restitution falls with the penalty."""
     exact = 1.0 - 1.5 / (1.0 + (4.0 / 1.1) ** 2)
     factors = (1.0 / 3.0, 1.0, 3.0, 9.0)
-    ratios = {1.0 / factor: peaks(released(block(4.0 / 1.1), factor)) for factor in factors}
+    ratios = {1.0 / factor: run(block(4.0 / 1.1), stiffer=factor).restitution for factor in factors}
     errors = {size: abs(value - exact) for size, value in ratios.items()}
     yield housner(
         "rigid stack, penalty from a third to nine times the default",
@@ -72,7 +71,7 @@ def variations() -> Findings:
         ratios = {}
         for penalty, step, size in itertools.product((1.0, 3.0), ("auto", 1e-3), sizes):
             case = block(lam, sizes[size] | {"solver.step_s": step})
-            ratio = peaks(released(case, penalty, containers[size]))
+            ratio = run(case, None, containers[size], penalty).restitution
             ratios[f"penalty x {penalty:g}, step {step}, h = {size} m"] = ratio
         exact = 1.0 - 1.5 / (1.0 + lam**2)
         worst, value = max(ratios.items(), key=lambda item: abs(item[1] - exact))
@@ -86,10 +85,10 @@ def stiffness_of_the_container() -> Findings:
     """Solid stacks from f1/f_c = 7 up: the limit of what is claimed."""
     for modulus in (4.3e11, 8.5e11, 2.1e12):
         elastic = {"container.youngs_modulus_Pa": modulus, "solver.element_size_m": 0.1}
-        done = released(block(3.6364, SOLID | elastic))
+        done = run(block(3.6364, SOLID | elastic))
         bounce = contact_frequency(done.model.container.mesh.mass, done.model.base_stiffness)
         case = f"solid stack, 20 modes, f1/f_c = {done.model.spectra[0][0] / bounce:.1f}"
-        yield housner(case, COMPARED, peaks(done), 0.8945, absolute=SOLID_TOLERANCE)
+        yield housner(case, COMPARED, done.restitution, 0.8945, absolute=SOLID_TOLERANCE)
 
 
 @check("restitution", "centroids and columns", inputs=MESH)
@@ -97,16 +96,16 @@ def centroids_and_columns() -> Findings:
     """Boxes filled below and above their middle, two boxes and eight, and a column 1:20: as Housner's."""
     for centroid in (0.25, 0.35, 0.5, 0.65):
         filled = {"container.centroid_m": centroid, "container.section": "shell", "container.wall_m": 0.008}
-        done = released(boxes(4, filled))
+        done = run(boxes(4, filled))
         case, exact = f"four boxes, centroids at {centroid} m of 1.0 m", done.block.housner_restitution
         source = "1 - (M R^2/I_O)(1 - cos 2 al), Housner 1963"
-        yield analytic(case, COMPARED, peaks(done), exact, source=source, absolute=RIGID_TOLERANCE)
+        yield analytic(case, COMPARED, done.restitution, exact, source=source, absolute=RIGID_TOLERANCE)
     for count in (2, 8):
         exact = 1.0 - 1.5 / (1.0 + (count / 1.1) ** 2)
         yield housner(
-            f"{count} boxes", COMPARED, peaks(released(boxes(count))), exact, absolute=RIGID_TOLERANCE
+            f"{count} boxes", COMPARED, run(boxes(count)).restitution, exact, absolute=RIGID_TOLERANCE
         )
-    ratio = peaks(released(block(20.0, {"solver.duration_s": 6.0})))
+    ratio = run(block(20.0, {"solver.duration_s": 6.0})).restitution
     yield housner("column, c/a = 20", COMPARED, ratio, 1.0 - 1.5 / 401.0, absolute=1e-3)
 
 
@@ -119,7 +118,7 @@ def tolerances_and_steps() -> Findings:
             {"solver.energy_tolerance": tolerance, "solver.step_s": step}
             for tolerance, step in itertools.product((0.01, 1.0, 10.0), (1e-4, 1e-2))
         )
-        ratios = [peaks(released(block(STACKED, keys | setting))) for setting in settings]
+        ratios = [run(block(STACKED, keys | setting)).restitution for setting in settings]
         case, compared = (
             f"rigid stack on {kind}, tolerance 0.01 to 10, steps of 0.1 to 10 ms",
             f"{COMPARED}, largest minus least",
@@ -135,11 +134,11 @@ def stated() -> Findings:
     for lam, ratios in stated_ratios.items():
         for ratio, share in itertools.product(ratios, (0.5, 0.2, 0.07)):
             start = {"initial.rotation_rad": share * math.atan(1.0 / lam)}
-            done = released(block(lam, start | {"contact.restitution_over_housner": ratio}))
+            done = run(block(lam, start | {"contact.restitution_over_housner": ratio}))
             case = f"rigid block, c/a = {lam:.3g}, released from {share:g} of the slenderness angle"
             compared, source = f"{COMPARED}, {ratio:g} of Housner's asked for", "as asked for in the case"
             exact = ratio * (1.0 - 1.5 / (1.0 + lam**2))
-            yield analytic(case, compared, peaks(done), exact, source=source, absolute=RIGID_TOLERANCE)
+            yield analytic(case, compared, done.restitution, exact, source=source, absolute=RIGID_TOLERANCE)
 
 
 @check("restitution", "a stated restitution under a pulse", inputs=MESH)
@@ -181,7 +180,7 @@ def bed_of_springs() -> Findings:
     )
     for kind, values, sizes in beds:
         keys = {"support.kind": kind, "output.history_s": 1e-3} | values
-        runs = {size: released(block(STACKED, keys | {"solver.element_size_m": size})) for size in sizes}
+        runs = {size: run(block(STACKED, keys | {"solver.element_size_m": size})) for size in sizes}
         done = runs[0.05]
         contact, width = done.model.run.problem.contact, 2.0 * done.block.half_width
         turned = next_turning_point(
@@ -231,17 +230,3 @@ def block(slenderness: float, values: Keys | None = None) -> Case:
         "contact.mu_static": 3.0,
     }
     return STACK.with_values(tilted | (values or {}))
-
-
-def released(case: Case, stiffer: float = 1.0, container: Container | None = None) -> Finished:
-    """The run of a block; `stiffer` multiplies its default penalty."""
-    model = build_model(case, container)
-    if stiffer != 1.0:
-        penalty = {"contact.normal_penalty_Pa_m": stiffer * model.penalty}
-        model = build_model(case.with_values(penalty), model.container)
-    return finish(model)
-
-
-def peaks(done: Finished) -> float:
-    """Velocity ratio of the first impact, by the peaks around it."""
-    return float(done.track.restitution)

@@ -25,7 +25,6 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.results.history import History
 
-BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "stiff solid stack, 20 modes": runs.STIFF_SOLID}
 
 
@@ -86,7 +85,7 @@ def tilt_statics() -> Findings:
     """Floor acceleration that holds the tilted block: between one that lifts it further and one that lets it fall."""
     for share in (0.2, 0.7):
         rotation = share * runs.SLENDERNESS
-        hold = holding_acceleration(BLOCK, rotation)
+        hold = holding_acceleration(runs.BLOCK, rotation)
         tilted = {"initial.rotation_rad": rotation, "contact.mu_static": 2.0, "solver.duration_s": 0.1}
         accelerations, speeds = (0.98 * hold, 1.02 * hold), []
         for acceleration in accelerations:
@@ -110,7 +109,7 @@ def friction_at_impact() -> Findings:
     compared = "horizontal over vertical impulse of the first impact"
     yield analytic(case, compared, abs(along) / up, 0.2024, source=source, relative=0.01)
     for factor, slides in ((1.5, False), (0.9, True)):
-        friction = {"contact.mu_static": factor * impact_friction_need(BLOCK)}
+        friction = {"contact.mu_static": factor * impact_friction_need(runs.BLOCK)}
         sampled = {"solver.duration_s": 0.75, "output.history_s": 0.001}
         done = runs.run(runs.STACK, runs.TILTED | friction | sampled)
         impact = float(done.track.first_impact)

@@ -43,20 +43,13 @@ KEYS = {"compared": "what", "passed": "holds"} | {
 }
 
 
-class UnknownTopicError(CaseError):
-    """There is no such topic."""
-
-    def __init__(self, name: str, known: Sequence[str]) -> None:
-        hint = f"; {near}" if (near := did_you_mean(name, known)) else ""
-        super().__init__(f"unknown topic {name!r}{hint} (known: {', '.join(known)})")
-
-
 def chosen_checks(*, quick: bool, topics: Sequence[str] = ()) -> list[Check]:
     """Checks of some topics, or of all, in order; the quick ones or all."""
     known = list(dict.fromkeys(check.topic for check in CHECKS))
     for name in topics:
         if name not in known:
-            raise UnknownTopicError(name, known)
+            hint = f"; {near}" if (near := did_you_mean(name, known)) else ""
+            raise CaseError(f"unknown topic {name!r}{hint} (known: {', '.join(known)})")
     wanted = topics or known
     return [check for check in CHECKS if check.topic in wanted and (check.quick or not quick)]
 

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from running_example import ACTION, PEAK_VELOCITY, SLIP, k1
+from site_example import ACTION, PEAK_VELOCITY, SLIP, k1
 
 from fem.seismic import methods as rules
 from fem.seismic.body import FloorAction, MethodQuantity, MethodRow

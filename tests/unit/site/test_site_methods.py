@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from running_example import SITE
-from site_example import INPUTS, PERIODS, site_body, site_motion
+from site_example import INPUTS, PERIODS, SITE, site_body, site_motion
 
 from fem.site.methods import floor_action, loose_body, site_methods
 from fem.site.result import FloorResult

@@ -5,8 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import scipy.sparse.linalg
-from loads import edge_load, force_and_energy, internal_force, tangent
-from meshes import mapped_mesh
+from meshes import edge_load, force_and_energy, internal_force, mapped_mesh, tangent
 
 from fem.solid import elasticity
 from fem.solid.assembly import assemble

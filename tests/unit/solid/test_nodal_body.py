@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from loads import force_and_energy
+from meshes import force_and_energy
 from scipy.sparse.linalg import spsolve
 
 from contact.stepping.body import Ground

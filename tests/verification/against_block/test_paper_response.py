@@ -9,13 +9,12 @@ import math
 
 import pytest
 from floors import sine_floor
+from runs import BLOCK
 
-from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main
 
 pytestmark = pytest.mark.slow
-BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 PEAK = 4.0  #: of the floor, held [m/s2]
 #: frequency -> rotation ratio of the motion of period 3
 PERIOD_3 = {1.2: 0.465, 1.5: 0.341, 1.8: 0.259, 2.1: 0.201, 2.4: 0.160}

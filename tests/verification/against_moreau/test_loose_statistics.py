@@ -38,7 +38,7 @@ def motions():
 def by_moreau(times, acceleration):
     """Whether a box fell, largest rotation of a box over the slenderness angle, largest slip of each [m]."""
     middles = STEP * (np.arange(round(DURATION / STEP)) + 0.5)
-    boxes = Boxes.homogeneous([1.1] * 4, [1.0] * 4, [2500.0] * 4)
+    boxes = Boxes([1.1] * 4, [1.0] * 4, [2500.0] * 4)
     friction = np.array([FLOOR, JOINT, JOINT, JOINT])
     found = move_boxes(boxes, np.interp(middles, times, acceleration), step=STEP, mu_static=friction)
     return [found.fell_box >= 0, found.max_rotation.max() / SLENDERNESS, *found.max_slip]

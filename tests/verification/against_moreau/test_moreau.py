@@ -7,15 +7,14 @@ import pytest
 from floors import half_sine_pulse, sine_floor
 from moreau import Boxes, move_boxes, slide_and_rock
 from rigid_slider import RigidSlider, simulate_sliding
+from runs import BLOCK
 from two_blocks import StackedBlock, TwoBlockStack, simulate_two_blocks
 
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.rigid_block import RigidBlock
 
 pytestmark = pytest.mark.slow  # as what is compared with it
-WHOLE = RigidBlock.homogeneous(width=1.1, height=4.0)
-ONE = Boxes.homogeneous([1.1], [4.0], [10e3])
+ONE = Boxes([1.1], [4.0], [10e3])
 OMEGA = 6.928  # of the default motion [rad/s]
 STEP = 5e-4
 
@@ -33,16 +32,16 @@ def test_one_box_rocks_as_the_event_driven_block():
     found = move_boxes(ONE, shaken(4.0, 6.0), step=STEP, mu_static=0.4)
     floor = sine_floor(amplitude=4.0 / OMEGA**2, angular_frequency=OMEGA)
     exact = simulate_planar_block(
-        PlanarBlock(body=WHOLE, mu_static=0.4, mu_kinetic=0.4), floor, duration=6.0
+        PlanarBlock(body=BLOCK, mu_static=0.4, mu_kinetic=0.4), floor, duration=6.0
     ).largest_rotation
-    assert exact / WHOLE.slenderness_angle == pytest.approx(0.3992, abs=1e-4)
+    assert exact / BLOCK.slenderness_angle == pytest.approx(0.3992, abs=1e-4)
     assert found.max_rotation[0] == pytest.approx(exact, rel=2e-3)
     assert found.max_slip[0] < 2e-5
 
 
 def test_one_box_slides_as_the_event_driven_slider():
     floor = sine_floor(amplitude=6.0 / OMEGA**2, angular_frequency=OMEGA)
-    squat = Boxes.homogeneous([4.0], [1.0], [10e3])
+    squat = Boxes([4.0], [1.0], [10e3])
     fine = 0.25 * STEP
     found = move_boxes(squat, shaken(6.0, 5.0, fine), step=fine, mu_static=0.4, mu_kinetic=0.2)
     slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=9.81)
@@ -72,7 +71,7 @@ def test_two_boxes_pass_from_pattern_to_pattern_as_the_event_driven_ones(box):
     floor, errors = half_sine_pulse(peak=9.81, duration=0.15), []
     exact = simulate_two_blocks(stack, floor, duration=1.0)
     assert len(exact.impacts) >= 1
-    boxes = Boxes.homogeneous([1.1, box[0]], [2.0, box[1]], [5000.0, 3000.0])
+    boxes = Boxes([1.1, box[0]], [2.0, box[1]], [5000.0, 3000.0])
     for step in (1e-3, 2.5e-4):
         found = move_boxes(
             boxes, sampled(floor, 1.0, step), step=step, mu_static=3.0, every=round(0.01 / step)
@@ -84,7 +83,7 @@ def test_two_boxes_pass_from_pattern_to_pattern_as_the_event_driven_ones(box):
 
 def test_a_box_is_pulled_from_under_another_one_and_that_falls():
     # frictionless joint: the upper box stays where it is; beyond half a width it tips into the gap beside
-    two = Boxes.homogeneous([1.0, 1.0], [1.0, 1.0], [1000.0, 1000.0])
+    two = Boxes([1.0, 1.0], [1.0, 1.0], [1000.0, 1000.0])
     pull = np.where(np.arange(2000) < 500, 3.0, 0.0)
     found = move_boxes(two, pull, step=1e-3, mu_static=np.array([0.9, 0.0]), every=1)
     gone = 0.5 * 3.0 * 0.3**2

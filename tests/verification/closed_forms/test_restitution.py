@@ -2,6 +2,7 @@
 
 By hand: a block that leaves the floor with the energy E meets it with E, an impact leaves (r e)^2 E, e Housner's, and r
 has taken (1 - r^2) e^2 E of that. In motion: the event-driven block of `contact.reference.rocking`.
+Then the block on springs that the restitution of a flat base is compared with, by limits known without it.
 """
 
 import math
@@ -10,12 +11,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from block_on_floor import Block, Rig, rig
-from runs import STACK, pulse, run, stack
+from block_on_springs import evenly_spaced, next_turning_point
+from closed_forms import peak_after_impacts
+from runs import BLOCK, STACK, pulse, run, stack
 from stack_on_floor import Box, stack_rig
 
 from contact.motion.base_motion import PulseMotion
 from contact.motion.kernel import UNIFORM, as_floor_motion
-from contact.reference.rigid_block import RigidBlock
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z
 from contact.stepping.ledger import BASE_WORK, FRICTION, IMBALANCE, IMPACTS
 from contact.stepping.outcome import advance_compiled
@@ -123,7 +125,7 @@ def test_elastic_containers_keep_the_same_share_of_what_their_impact_leaves(sect
     models = ["reduced", "full"] if (kind, section) == ("corners", "solid") else ["reduced"]
     for model in models:
         own, asked = (
-            run(stack(section, support__kind=kind, solver__model=model, **more)).track.restitution
+            run(stack(section, support__kind=kind, solver__model=model, **more)).restitution
             for more in ({}, {"contact__restitution_over_housner": 0.95})
         )
         assert asked / own == pytest.approx(0.95, abs=4e-3)
@@ -186,5 +188,26 @@ def test_impacts_that_would_leave_more_than_there_was_are_refused_with_the_most(
     keys = {"contact.restitution_over_housner": 1.2}
     with pytest.raises(CaseError, match="more than there was") as error:
         build_model(STACK.with_values(keys))
-    housner = RigidBlock.homogeneous(width=1.1, height=4.0, gravity=9.81).housner_restitution
-    assert float(str(error.value).rsplit(" ", 1)[1]) == pytest.approx(1.0 / housner, rel=1e-3)
+    most = 1.0 / BLOCK.housner_restitution
+    assert float(str(error.value).rsplit(" ", 1)[1]) == pytest.approx(most, rel=1e-3)
+
+
+CORNERS = np.array([-0.55, 0.55])
+RELEASED = 0.5 * BLOCK.slenderness_angle
+
+
+def turned(places, *, side=1.0):
+    return next_turning_point(
+        BLOCK, places=places, stiffness=5e6, relaxation_time=7e-3, rotation=side * RELEASED, duration=2.0
+    )
+
+
+def test_on_two_stiff_corners_the_block_on_springs_is_housners():
+    exact = peak_after_impacts(BLOCK, RELEASED, 1, BLOCK.housner_restitution)
+    assert turned(CORNERS) == pytest.approx(exact, rel=5e-3)
+
+
+def test_on_a_bed_of_springs_a_block_keeps_more_and_knows_no_side():
+    bed = turned(evenly_spaced(1.1, 45))
+    assert 1.1 * turned(CORNERS) < bed < RELEASED
+    assert turned(evenly_spaced(1.1, 45), side=-1.0) == pytest.approx(bed, rel=1e-3)

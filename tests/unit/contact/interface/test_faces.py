@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from contacts import contact_of
+from block_on_floor import contact_of
 
 from contact.arrays import FloatArray
 from contact.interface.faces import (

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from contacts import contact_of
+from block_on_floor import contact_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
