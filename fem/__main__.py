@@ -230,9 +230,8 @@ def program() -> NoReturn:
         stream = getattr(sys, name)
         if stream is None:  # closed
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
-        elif isinstance(
-            stream, io.TextIOWrapper
-        ):  # its encoding may lack some signs, as of a pipe on Windows
+        elif isinstance(stream, io.TextIOWrapper):
+            # its encoding may lack some signs, as of a pipe on Windows
             stream.reconfigure(errors="replace")
     # A pass of the cyclic collector for every 700 objects would be a fifth of a short run, most of it over the
     # modules that are being loaded.

@@ -4,7 +4,8 @@ import importlib
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from textwrap import fill
 from typing import Annotated, Any
@@ -14,15 +15,14 @@ from cyclopts import Parameter
 from fem.case.case import Case, case_hash, load_case
 from fem.case.files import is_site
 from fem.case.tables.duration import longest_time
-from fem.case.tables.motion_tables import FloorMotionTable
 from fem.case.validation import CaseError
 from fem.cli import console
+from fem.html.page import text_of
 from fem.model.geometry import build_container, node_count
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import free_disk, in_units
 from fem.results.errors import OutputError
 from fem.results.kinds import read_result
-from fem.results.run_result import MotionResult
 from fem.run.described import floor_rows, link_rows, motion_in_words, part_covered, sides_in_words, sides_of
 from fem.run.preview import Preview
 from fem.runtime.memory import CHECKS, RIGID, memory_of, shortage
@@ -138,15 +138,7 @@ def _plan(case: Case, folder: Path, *, as_json: bool) -> str:
             "numerics": preview.numerics,
         }
         return json.dumps(plan, indent=2)
-    there = " (exists)" if folder.exists() else ""
-    lines = [
-        f"{case.name}: {case.title}" if case.title else case.name,
-        f"  folder      {folder}{there}{'' if free is None else f', room for {in_units(free)}'}",
-        f"  floor       {case.motion.kind}, peak {preview.peak:.4g} m/s2",
-    ]
-    if preview.vertical_peak is not None:
-        lines.append(f"  vertical    {case.vertical.kind}, peak {preview.vertical_peak:.4g} m/s2")
-    return "\n".join(lines + _numerics_lines(preview.numerics))
+    return _page("plan", preview, folder=folder, free=free)
 
 
 def check(
@@ -182,7 +174,7 @@ def check(
     for side in (loaded, *filter(None, (other,))):
         preview = preview_of(side)
         document = {"case": side.name, "asked_hash": case_hash(side)} | preview.to_json()
-        say(json.dumps(document, indent=2) if as_json else _page(preview, document))
+        say(json.dumps(document, indent=2) if as_json else _checks(preview, document))
 
 
 def preview_of(case: Case) -> Preview:
@@ -204,103 +196,31 @@ def preview_of(case: Case) -> Preview:
     return preview
 
 
-def _numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
-    modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
-    pascals = numerics["normal_penalty_Pa_m"]
-    penalty = "" if pascals is None else f"{pascals:.4g} Pa/m, "
-    most = "at most " if numerics["ends_at_rest"] else ""
-    return [
-        f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
-        f"  mesh        {numerics['elements']} elements, {numerics['nodes']} nodes "
-        f"({numerics['mesh_unknowns']} unknowns), {numerics['contact_nodes']} contact nodes",
-        f"  contact     {penalty}frequency {numerics['contact_frequency_Hz']:.4g} Hz, "
-        f"static penetration {1e6 * numerics['static_penetration_m']:.3g} um",
-        f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
-        f"over {most}{numerics['duration_s']:g} s, about {in_units(numerics['output_bytes'])}",
-    ]
+def _checks(preview: Preview, document: Mapping[str, Any]) -> str:
+    case, static, code = preview.case, preview.static, preview.static.by_code
+    named = [("own motion", static.own_motion), ("own, vertical", static.own_motion_vertical)]
+    if code is not None:
+        named += [(f"code, q = {code.values.behaviour_factor:g}", code.as_given), ("code, q = 1", code.q1)]
+    named.append(("wind", static.wind))
+    return _page(
+        "checks",
+        preview,
+        actions={name: action for name, action in named if action is not None},
+        degrees=math.degrees,
+        derived=document["derived"],
+        motion_in_words=motion_in_words,
+        notes=document["notes"],
+        part=part_covered(preview.motion),
+        restitution=document["contact_restitution"],
+        rows=[*floor_rows(preview.floor), *link_rows(case)],
+        sides=sides_in_words(
+            sides_of(case.stack[0].width, case.container.depth_m, static.to_result())
+        ).removeprefix(". "),
+        wrapped=partial(fill, width=console.WIDTH),
+    )
 
 
-def _page(preview: Preview, document: dict[str, Any]) -> str:
-    case, static, derived, numerics = preview.case, preview.static, document["derived"], document["numerics"]
-    container, support = case.container, case.support
-    boxes = f"{container.boxes} box{'es' if container.boxes > 1 else ''}, {container.section}, {support.kind}"
-    lines = [
-        f"{case.name}: {case.title}" if case.title else case.name,
-        f"  container   {derived['width_m']:g} x {derived['height_m']:g} m, "
-        f"{derived['mass_kg']:.6g} kg, {boxes}",
-        *_motion_lines("floor", "motion", case.motion, preview.motion),
-        *(
-            _motion_lines("vertical", "", case.vertical, upward)
-            if (upward := preview.motion.vertical)
-            else ()
-        ),
-        *([f"  run         {part}"] if (part := part_covered(preview.motion)) else ()),
-        *(
-            fill(f"{name:<11} {value}", console.WIDTH, initial_indent="  ", subsequent_indent=14 * " ")
-            for name, value in [*floor_rows(preview.floor), *link_rows(case)]
-        ),
-        "",
-        f"  slenderness angle      {math.degrees(static.slenderness_angle):8.3f} deg   "
-        f"mass centre at {static.centroid:.4g} m",
-        f"  frequency parameter    {static.frequency_parameter:8.4f} 1/s",
-        f"  rocking period, paper  {static.period_eq2:8.3f} s as a point mass, {static.period_eq3:.3f} s as a rod",
-        f"  uplift from            {static.uplift_acceleration:8.4f} m/s2, "
-        f"slip from {static.slip_acceleration:.4g} m/s2",
-        f"  restitution, Housner   {static.housner_restitution:8.4f}",
-        f"  restitution, contact   {_restitution_of_contact(case, document)}",
-        "",
-        "  static rule                        demand     capacity   utilisation",
-    ]
-    actions = {"own motion": static.own_motion}
-    if static.own_motion_vertical is not None:
-        actions["own, vertical"] = static.own_motion_vertical
-    if (code := static.by_code) is not None:
-        actions |= {f"code, q = {code.values.behaviour_factor:g}": code.as_given, "code, q = 1": code.q1}
-    if static.wind is not None:
-        actions["wind"] = static.wind
-    for action, result in actions.items():
-        for kind, rule in (("sliding", result.sliding), ("overturning", result.overturning)):
-            verdict = "" if rule.passed else f"  {'slides' if kind == 'sliding' else 'overturns'}"
-            lines.append(
-                f"    {action:<14} {kind:<12} {rule.demand / 1e3:8.3f}   {rule.capacity / 1e3:8.3f} "
-                f"{'k' + rule.unit:<4} {rule.utilisation:8.3f}{verdict}"
-            )
-    sides = sides_of(case.stack[0].width, container.depth_m, static.to_result())
-    lines += [f"  {line}" for line in filter(None, [sides_in_words(sides).removeprefix(". ")])]
-    lines += ["", *_numerics_lines(numerics)]
-    for note in document["notes"]:
-        lines.append(
-            fill(
-                note,
-                console.WIDTH,
-                initial_indent="  note: ",
-                subsequent_indent="    ",
-                break_long_words=False,
-            )
-        )
-    return "\n".join(lines)
-
-
-def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionResult) -> Iterator[str]:
-    """What moves the floor in one direction, and the numbers of its motion."""
-    table = f"table {keys.file}" if keys.file else "in the file of [motion]"
-    harmonic = f"A = {keys.amplitude:.4g} m, Omega = {keys.angular_frequency:.4g} rad/s"
-    still = "at rest" if not motion.peak_in_run_m_s2 else "what [motion] is normal to the floor"
-    words = {"none": still, "harmonic": harmonic, "pulse": f"{keys.shape} pulse", "table": table}
-    yield f"  {name:<11} {words[keys.kind]}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
-    if length := motion_in_words(motion):
-        yield f"  {more:<11} {length}"
-
-
-def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
-    """From the calibration of the contact damping, and the factor on it."""
-    value, factor = document["contact_restitution"], case.contact.restitution_over_housner
-    of_it = "" if factor is None else f", of which {factor:g} is asked for"
-    if case.rolls:
-        return "none: a cambered base rolls"
-    if case.floor.is_slab:
-        return f"of the slab: where it crushes about Housner's{of_it}"
-    contact = f"damping ratio {case.contact.damping_ratio:g} on {case.support.kind}"
-    if value is None:
-        return f"not calibrated for {contact}{of_it}"
-    return f"{value / (factor or 1.0):8.4f} if rigid, with {contact}{of_it}"
+def _page(macro: str, preview: Preview, **shown: Any) -> str:
+    """What a macro of `check.txt.j2` says of a case."""
+    named = {"case": preview.case, "preview": preview, "numerics": preview.numerics, "in_units": in_units}
+    return text_of("check.txt.j2", macro, **named, **shown)

@@ -86,15 +86,12 @@ def box_figure(run: RunData, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]
     if tilted:
         angle = math.degrees(run.slenderness_angle)
         style.keep_visible(axes, 1.12 * angle)
-        style.draw_limits(axes, angle, f"α, ±{rounded(angle, 4)}°", color=style.BLACK, linestyle="-.")
+        style.draw_limits(axes, (angle, -angle), f"α, ±{rounded(angle, 4)}°", "-.")
         low, high = axes.get_ylim()
         # a box that falls leaves the scale
         axes.set_ylim(max(low, -FARTHEST * angle), min(high, FARTHEST * angle))
-    if verdict.fell_box is not None and verdict.overturned_at_s is not None:
-        name = f"fell, {verdict.overturned_at_s:.3f} s"
-        axes.axvline(
-            verdict.overturned_at_s, color=style.GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name
-        )
+    if verdict.fell_box is not None:
+        style.mark_instant(axes, "fell", verdict.overturned_at_s)
     style.legend_above(axes, LEGEND_COLUMNS)
     sizes = [quantity.factor * box[quantity.figure] for box in boxes]
     most = int(np.argmax(sizes))

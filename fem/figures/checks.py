@@ -1,4 +1,4 @@
-"""Figures of the two checks of a run: the analytic rigid block, and the sensitivity to what is not known (the band)."""
+"""Figures of the two checks of a run: the analytic rigid block, and the sensitivity to uncertain inputs (the band)."""
 
 import math
 import textwrap

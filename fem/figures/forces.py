@@ -44,22 +44,14 @@ def forces_figure(run: RunData) -> Figure:
     changing = style.changing_weight(history, run.case.gravity_m_s2)
     times = " times (g + a_v)/g" if changing is not None else ""
     name = f"weight, {rounded(weight, 4)} kN{times}"
-    if changing is None:
-        axes[0].axhline(weight, color=style.BLACK, linestyle="--", linewidth=0.9, label=name)
-    else:
-        axes[0].plot(
-            changing[0], weight * changing[1], color=style.BLACK, linestyle="--", linewidth=0.9, label=name
-        )
+    style.draw_limits(axes[0], (weight,), name, "--", of_weight=changing)
     if cap is not None and style.NEAR_LIMIT * 1e-3 * cap < normal.max():
-        label = f"a corner crushes at {rounded(1e-3 * cap)} kN"
-        axes[0].axhline(1e-3 * cap, color=style.BLACK, linestyle=":", linewidth=0.9, label=label)
+        style.draw_limits(axes[0], (1e-3 * cap,), f"a corner crushes at {rounded(1e-3 * cap)} kN", ":")
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
     for name, (mu, dashes) in friction.items():
         label = f"{name} friction{' of the weight' if not times else ''}, ±{rounded(mu * weight)} kN{times}"
-        style.draw_limits(
-            axes[1], mu * weight, label, of_weight=changing, color=style.BLACK, linestyle=dashes
-        )
+        style.draw_limits(axes[1], (mu * weight, -mu * weight), label, dashes, of_weight=changing)
         if contact.mu_static == contact.mu_kinetic:
             break
     for panel, force, limit in zip(axes, (normal, shear), limits, strict=True):
@@ -141,8 +133,7 @@ def _draw_stored(axes: Axes, run: RunData, reference: float | None, unit: str, s
         zero=False,
     )
     if reference and not row and raised.max() > style.NEAR_LIMIT * reference:
-        label = f"to overturn, {rounded(reference / size)} {unit}"
-        axes.axhline(reference / size, color=style.BLACK, linestyle="-.", linewidth=0.9, label=label)
+        style.draw_limits(axes, (reference / size,), f"to overturn, {rounded(reference / size)} {unit}", "-.")
 
 
 def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None:

@@ -80,9 +80,8 @@ class Panel:
     title: str = ""
     overturned: BoolArray | None = None  #: cells enclosed by a line; black where colours are a scale
     unsure: BoolArray | None = None  #: cells that are hatched
-    look: Mapping[str, str] | None = (
-        None  #: colours of its own by their words, to whose places `values` refer
-    )
+    #: colours of its own by their words, to whose places `values` refer
+    look: Mapping[str, str] | None = None
     texts: Sequence[Sequence[str]] | None = None  #: within the cells
     curves: Sequence[MapCurve] = ()
 

@@ -13,7 +13,7 @@ from fem.figures import style
 from fem.html.units import rounded
 from fem.records.processing import motion_of
 from fem.records.record import Component
-from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
+from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.reader import RunData
 from fem.runtime.arrays import FloatArray
 
@@ -76,10 +76,14 @@ def _draw_fractiles(panel: Axes, periods: FloatArray, spectra: FloatArray) -> No
 DAMPED = "pseudo-acceleration, 5 % of critical damping"
 
 
-def spectrum_of(component: Component) -> Spectrum:
-    """Response spectrum of a processed component, for 5 % of damping, from what its samples resolve up to 4 s."""
+def spectrum_of(component: Component) -> tuple[FloatArray, FloatArray]:
+    """Periods (k,) [s] and pseudo-accelerations (k,) [m/s2] of a processed component, for 5 % of damping.
+
+    From what its samples resolve up to 4 s.
+    """
     step, values = evenly_sampled(component.times, motion_of(component)[2])
-    return response_spectrum(step, values, log_spaced_periods(component.step))
+    periods = log_spaced_periods(component.step)
+    return periods, response_spectrum(step, values, periods)
 
 
 def spectrum_figure(run: RunData) -> Figure | None:
@@ -142,21 +146,15 @@ def record_figure(components: Sequence[Component], title: str) -> Figure:
 
 
 def _largest(component: Component) -> tuple[float, float]:
-    spectrum = spectrum_of(component)
-    at = int(np.argmax(spectrum.pseudo_acceleration_m_s2))
-    return float(spectrum.periods_s[at]), float(spectrum.pseudo_acceleration_m_s2[at])
+    periods, spectrum = spectrum_of(component)
+    at = int(np.argmax(spectrum))
+    return float(periods[at]), float(spectrum[at])
 
 
 def _draw_spectra(axes: Axes, named: Sequence[tuple[str, Component]]) -> None:
     for k, (name, component) in enumerate(named):
-        spectrum = spectrum_of(component)
-        axes.plot(
-            spectrum.periods_s,
-            spectrum.pseudo_acceleration_m_s2,
-            color=COLOURS[k],
-            linestyle=LINES[k],
-            label=name if len(named) > 1 else None,
-        )
+        label = name if len(named) > 1 else None
+        axes.plot(*spectrum_of(component), color=COLOURS[k], linestyle=LINES[k], label=label)
     style.spectrum_axes(axes)
     axes.set_ylabel("spectrum [m/s²]")
     axes.set_xlabel("period [s]")

@@ -136,7 +136,7 @@ def base_motion_figure(run: RunData) -> Figure:
             label = f"a static load {name} it from {rounded(limit)} m/s²"
             if history.vertical:
                 label = f"{name} statically from {rounded(limit)} (g + a_v)/g"
-            style.draw_limits(axes[2], limit, label, of_weight=weight, color=style.BLACK, linestyle=dashes)
+            style.draw_limits(axes[2], (limit, -limit), label, dashes, of_weight=weight)
     if axes[2].get_legend_handles_labels()[0]:
         style.legend_above(axes[2])
     title = f"Motion of the floor: {rounded(moved)} mm and {rounded(peak)} m/s² at most"
@@ -170,16 +170,14 @@ def rotation_figure(run: RunData) -> Figure:
     largest, rocking = float(np.abs(rotation).max()), ROCKING * angle
     if largest >= style.NEAR_LIMIT * angle:
         style.keep_visible(axes, 1.12 * angle)
-        style.draw_limits(
-            axes, angle, f"slenderness angle ±{rounded(angle, 4)}°", color=style.BLACK, linestyle="-."
-        )
+        style.draw_limits(axes, (angle, -angle), f"slenderness angle ±{rounded(angle, 4)}°", "-.")
     else:
         style.keep_visible(axes, 1.2 * rocking)
         if largest < 10.0 * rocking:
             name = f"counts as rocking, ±{rounded(rocking, 2)}°"
-            style.draw_limits(axes, rocking, name, color=style.GREY, linestyle=":")
+            style.draw_limits(axes, (rocking, -rocking), name, ":", colour=style.GREY)
         axes.plot([], [], " ", label=f"slenderness angle ±{rounded(angle, 4)}°: far off the scale")
-    _mark_impact(axes, verdict)
+    style.mark_instant(axes, "first impact", verdict.first_impact_s)
     style.legend_above(axes)
     turned = math.degrees(verdict.max_rotation_rad or math.radians(largest))
     least, ratio = math.degrees(DEGREES.least), RATIO.text(turned / angle)
@@ -200,9 +198,8 @@ def slip_figure(run: RunData) -> Figure:
     figure, axes = _panel(run, slip, "slip [mm]", zero=True, legend=small)
     style.keep_visible(axes, 1.5 * limit)
     if small:
-        style.draw_limits(
-            axes, limit, f"counts as sliding, ±{rounded(limit, 2)} mm", color=style.GREY, linestyle=":"
-        )
+        name = f"counts as sliding, ±{rounded(limit, 2)} mm"
+        style.draw_limits(axes, (limit, -limit), name, ":", colour=style.GREY)
         style.legend_above(axes)
     largest = 1e3 * verdict.slipped
     travel = 1e3 * (verdict.slip_travel_m or 0.0)
@@ -222,7 +219,7 @@ def uplift_figure(run: RunData) -> Figure:
     figure, axes = _panel(run, uplift, "uplift [mm]", legend=struck)
     axes.set_ylim(0.0, max(1.08 * float(uplift.max()), run.case.container.width_m))
     if struck:
-        _mark_impact(axes, verdict)
+        style.mark_instant(axes, "first impact", verdict.first_impact_s)
         style.legend_above(axes)
     impacts, largest = verdict.impacts, 1e3 * (verdict.max_uplift_m or 0.0)
     count = "" if impacts is None else f", {impacts} impact{'' if impacts == 1 else 's'}"
@@ -313,11 +310,3 @@ def _panel(
 def _millimetres(value: float) -> str:
     """A slip in a title; below 0.01 mm it has no practical meaning."""
     return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{rounded(value)} mm"
-
-
-def _mark_impact(axes: Axes, verdict: Verdict) -> None:
-    """A line at the first impact, if any."""
-    impact = verdict.first_impact_s
-    if impact is not None:
-        label = f"first impact, {impact:.3f} s"
-        axes.axvline(impact, color=style.GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)

@@ -243,22 +243,32 @@ def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
 
 def draw_limits(
     axes: Axes,
-    value: float,
+    limits: Sequence[float],
     label: str,
+    linestyle: str,
     *,
+    colour: str = BLACK,
     of_weight: tuple[FloatArray, FloatArray] | None = None,
-    **style: Any,
 ) -> None:
-    """Lines at plus and minus a limit, with one entry in the legend.
+    """Lines at limits, with one entry in the legend.
 
     Args:
-        of_weight: times and share (g + a_v)/g, where the limit follows a weight that changes.
+        of_weight: times and share (g + a_v)/g, where the limits follow a weight that changes.
     """
-    for limit, name in ((value, label), (-value, None)):
+    look: dict[str, Any] = {"color": colour, "linestyle": linestyle, "linewidth": 0.9}
+    for k, limit in enumerate(limits):
+        name = label if k == 0 else None
         if of_weight is None:
-            axes.axhline(limit, linewidth=0.9, label=name, **style)
+            axes.axhline(limit, label=name, **look)
         else:
-            axes.plot(of_weight[0], limit * of_weight[1], linewidth=0.9, label=name, **style)
+            axes.plot(of_weight[0], limit * of_weight[1], label=name, **look)
+
+
+def mark_instant(axes: Axes, what: str, instant: float | None) -> None:
+    """A line at an instant [s], with its time in the legend; none where there is none."""
+    if instant is not None:
+        label = f"{what}, {instant:.3f} s"
+        axes.axvline(instant, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)
 
 
 def changing_weight(history: History, gravity: float) -> tuple[FloatArray, FloatArray] | None:

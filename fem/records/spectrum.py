@@ -27,17 +27,6 @@ ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
-class Spectrum:
-    """Largest magnitudes of the response of oscillators, each of shape (k,); w = 2 pi / period."""
-
-    periods_s: FloatArray
-    damping_ratio: float
-    displacement_m: FloatArray  #: relative to the floor
-    pseudo_acceleration_m_s2: FloatArray  #: w^2 times the displacement
-    acceleration_m_s2: FloatArray  #: absolute
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class OscillatorHistory:
     """Response of one oscillator at the samples of the motion, each of shape (n,)."""
 
@@ -67,8 +56,10 @@ def evenly_sampled(times_s: FloatArray, acceleration: FloatArray) -> tuple[float
 
 def response_spectrum(
     step_s: float, acceleration: FloatArray, periods_s: FloatArray, damping_ratio: float = DAMPING_RATIO
-) -> Spectrum:
-    """Response spectrum of a sampled acceleration; exact for the straight lines through its samples.
+) -> FloatArray:
+    """Largest pseudo-accelerations of oscillators, w^2 times the displacement, w = 2 pi / period, shape (k,) [m/s2].
+
+    Exact for the straight lines through the samples.
 
     Args:
         step_s: between samples [s].
@@ -89,17 +80,9 @@ def response_spectrum(
         root, before, after = _step(step_s / parts, period, damping_ratio)
         factors = np.array([root, complex(np.exp(root * step_s / parts)), before, after])
         steps[k] = 2.0 * math.pi / period, parts, *factors.view(np.float64)
-    peaks = np.empty((periods.size, 2))
+    peaks = np.empty(periods.size)
     _peaks_of(values, step_s, damping_ratio, steps, peaks)
-    displacement, absolute = peaks.T
-    rates = 2.0 * math.pi / periods
-    return Spectrum(
-        periods_s=periods,
-        damping_ratio=damping_ratio,
-        displacement_m=displacement,
-        pseudo_acceleration_m_s2=rates**2 * displacement,
-        acceleration_m_s2=absolute,
-    )
+    return (2.0 * math.pi / periods) ** 2 * peaks
 
 
 def oscillator_response(
@@ -218,23 +201,22 @@ def _free(rate: float, damping_ratio: float, value: float, slope: float) -> floa
 def _peaks_of(
     values: FloatArray, step: float, damping_ratio: float, steps: FloatArray, peaks: FloatArray
 ) -> None:
-    """Largest |relative displacement| [m] and |absolute acceleration| [m/s2] of oscillators.
+    """Largest |relative displacement| of oscillators.
 
     Args:
         values: acceleration of the floor, (n,) [m/s2]; zero after its last sample.
         step: between its samples [s].
         steps: of the oscillators, (k, 10): rate w, parts of a step between samples, and real and imaginary parts of
             the root m, of its factor exp(m h), and of the factors of the accelerations before and after a part h.
-        peaks: (k, 2), written.
+        peaks: (k,), written [m].
     """
     for k in range(steps.shape[0]):
         rate, parts, root, damped = steps[k, 0], int(steps[k, 1]), steps[k, 2], steps[k, 3]
         turn_re, turn_im, before_re, before_im = steps[k, 4], steps[k, 5], steps[k, 6], steps[k, 7]
         after_re, after_im = steps[k, 8], steps[k, 9]
-        h, double, inverse = step / parts, 2.0 * damping_ratio, 1.0 / damped
-        re, im, x, v, y = 0.0, 0.0, 0.0, 0.0, 0.0
-        last, slope = values[0], rate * double * values[0]
-        most_x, most_y = 0.0, 0.0
+        h, inverse = step / parts, 1.0 / damped
+        re, im, x, v = 0.0, 0.0, 0.0, 0.0
+        last, most = values[0], 0.0
         for sample in range(1, values.size):
             begin, rise = values[sample - 1], (values[sample] - values[sample - 1]) / parts
             for part in range(parts):
@@ -243,14 +225,9 @@ def _peaks_of(
                     turn_re * re - turn_im * im + before_re * last + after_re * now,
                     turn_re * im + turn_im * re + before_im * last + after_im * now,
                 )
-                x0, v0, y0, slope_0 = x, v, y, slope
+                x0, v0 = x, v
                 x = im * inverse
                 v = re + root * x
-                y = -rate * (rate * x + double * v)
-                slope = -rate * (rate * v + double * (y - now))
-                most_x = _between(h, x0, x, v0, v, most_x)
-                most_y = _between(h, y0, y, slope_0, slope, most_y)
+                most = _between(h, x0, x, v0, v, most)
                 last = now
-        free_slope = -rate * (rate * v + double * y)
-        peaks[k, 0] = max(most_x, _free(rate, damping_ratio, x, v))
-        peaks[k, 1] = max(most_y, _free(rate, damping_ratio, y, free_slope))
+        peaks[k] = max(most, _free(rate, damping_ratio, x, v))

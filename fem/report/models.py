@@ -27,31 +27,29 @@ class OfModel:
     """What one model finds."""
 
     model: str
-    outcome: str | None  #: None: it left the floor, which no formula follows
-    rotation_ratio: float | None
-    max_slip_m: float | None
-    flight_share: float | None = None
-    overturns_at: float | None = None  #: times the motion, the first
-    tried_to: float | None = None  #: times the motion, where it does not; None: not tried
+    found: Verdict  #: without an outcome: it left the floor, which no formula follows
     own: bool = False  #: it is the run whose page this is
     needs: float | None = None  #: friction with which the analytic block rocks and does not slide
 
     @property
     def did(self) -> str:
         """What it did, in words."""
-        return "leaves the floor" if self.outcome is None else Outcome(self.outcome).verb
+        return "leaves the floor" if self.found.outcome is None else self.found.outcome.verb
 
     @property
     def slip(self) -> str:
         """How far it slid [mm], in words."""
-        return "0" if self.max_slip_m == 0.0 else MILLIMETRES.text(self.max_slip_m, figures=3, bare=True)
+        slip = self.found.max_slip_m
+        return "0" if slip == 0.0 else MILLIMETRES.text(slip, figures=3, bare=True)
 
     @property
     def margin(self) -> str:
         """At how many times the motion it overturns; empty where that was not tried."""
-        if self.overturns_at is not None:
-            return f"{self.overturns_at:.3g} times"
-        return "" if self.tried_to is None else f"not up to {self.tried_to:.3g} times"
+        margin = self.found.margin
+        if margin is None:
+            return ""
+        at, tried_to = margin.factor, margin.largest_tried
+        return f"not up to {tried_to:.3g} times" if at is None else f"{at:.3g} times"
 
 
 def of_run(run: OpenedRun) -> Sequence[OfModel]:
@@ -90,9 +88,11 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
     found = [
         OfModel(
             model="analytic rigid block",
-            outcome=block.outcome,
-            rotation_ratio=block.rotation_ratio,
-            max_slip_m=block.max_slip_m,
+            found=Verdict(
+                outcome=None if block.outcome is None else Outcome(block.outcome),
+                rotation_ratio=block.rotation_ratio,
+                max_slip_m=block.max_slip_m,
+            ),
             needs=block.friction_needed,
         )
     ]
@@ -101,47 +101,37 @@ def side_by_side(given: Case, own: Verdict | None = None) -> Sequence[OfModel]:
             case = given.replace(changes)
             known = own if case_hash(case) == asked else None
             verdict = known or compute(case.without_fields(), band=False, margin=True).verdict
-            margin = verdict.margin
-            found.append(
-                OfModel(
-                    model=name,
-                    own=known is not None,
-                    outcome=verdict.outcome,
-                    rotation_ratio=verdict.rotation_ratio,
-                    max_slip_m=verdict.max_slip_m,
-                    flight_share=verdict.flight_share,
-                    overturns_at=None if margin is None else margin.factor,
-                    tried_to=None if margin is None else margin.largest_tried,
-                )
-            )
+            found.append(OfModel(model=name, found=verdict, own=known is not None))
     return found
 
 
 def compared_in_words(given: Case, found: Sequence[OfModel]) -> str:
     """Whether the models agree, and what makes them differ, in sentences; empty of fewer than two."""
-    turned = sorted((one.rotation_ratio, one.model) for one in found if one.rotation_ratio is not None)
+    turned = sorted(
+        (one.found.rotation_ratio, one.model) for one in found if one.found.rotation_ratio is not None
+    )
     if len(turned) < 2:
         return ""
     (low, least), (high, most) = turned[0], turned[-1]
-    if Outcome.OVERTURNED in (ends := {one.outcome for one in found}):
-        fell = [one.model for one in found if one.outcome == Outcome.OVERTURNED]
+    if Outcome.OVERTURNED in (ends := {one.found.outcome for one in found}):
+        fell = [one.model for one in found if one.found.outcome == Outcome.OVERTURNED]
         words = "All overturn." if len(ends) == 1 else f"It overturns by some only: {', '.join(fell)}."
     elif high - low <= max(ALIKE * high, RATIO.least):
         words = f"Rotations agree: {RATIO.range_text((low, high))} of the slenderness angle."
     else:
         words = f"Rotations differ: {RATIO.text(low)} ({least}) to {RATIO.text(high)} ({most})."
-    slips = [one.max_slip_m for one in found if one.max_slip_m is not None]
+    slips = [one.found.max_slip_m for one in found if one.found.max_slip_m is not None]
     if slips and max(slips) > SLIDES_M:
         words += f" Slip is {MILLIMETRES.text(min(slips), figures=2)} to {MILLIMETRES.text(max(slips), figures=2)}."
     block, elastic = found[0], found[-1]
     static, kinetic = given.contact.mu_static, given.contact.mu_kinetic
-    slides = (elastic.max_slip_m or 0.0) > SLIDES_M > (block.max_slip_m or 0.0)
+    slides = elastic.found.slipped > SLIDES_M > block.found.slipped
     if block.needs is not None and kinetic < block.needs < static and slides:
         words += (
             f" To rock without sliding takes friction of {block.needs:.2g}, between kinetic ({kinetic:g}) and static "
             f"({static:g}): the block keeps to it, and a landing breaks the elastic container loose."
         )
-    if bounces := max((one.flight_share or 0.0 for one in found), default=0.0):
+    if bounces := max((one.found.flight_share or 0.0 for one in found), default=0.0):
         words += (
             f" Elastic, it is in the air for up to {PERCENT.text(bounces)} of the time in which it rocks."
         )

@@ -158,19 +158,6 @@ def program_of_results() -> dict[str, Any]:
     return {"program": program_identity()["sources"], "versions": versions()}
 
 
-def require_same_program(folder: Path, mark: Mapping[str, Any]) -> None:
-    """Refuse to continue with what another version of the program computed: a FolderError names what differs."""
-    if mark.get("program") != program_identity()["sources"]:
-        raise FolderError(f"{folder} holds results of another version of the program; {REMEDY}")
-    theirs = mark.get("versions")
-    for name, mine in versions().items():
-        other = theirs.get(name) if isinstance(theirs, dict) else None
-        if other != mine:
-            raise FolderError(
-                f"{folder} holds results of another version of {name} ({other}, here {mine}); {REMEDY}"
-            )
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ResultFolder:
     """A folder of results, opened for writing by `open_result_folder`."""
@@ -265,9 +252,18 @@ class ResultFolder:
             )
 
     def require_same_program(self) -> None:
-        """Refuse to continue with what another version of the program computed; FolderError as the function."""
-        if self.earlier is not None:
-            require_same_program(self.path, self.earlier)
+        """Refuse to continue with what another version of the program computed: a FolderError names what differs."""
+        if self.earlier is None:
+            return
+        if self.earlier.get("program") != program_identity()["sources"]:
+            raise FolderError(f"{self.path} holds results of another version of the program; {REMEDY}")
+        theirs = self.earlier.get("versions")
+        for name, mine in versions().items():
+            other = theirs.get(name) if isinstance(theirs, dict) else None
+            if other != mine:
+                raise FolderError(
+                    f"{self.path} holds results of another version of {name} ({other}, here {mine}); {REMEDY}"
+                )
 
     def refuse_unfinished(self, progress: str) -> None:
         """Refuse to overwrite an unfinished result that is worth continuing.

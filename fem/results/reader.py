@@ -26,8 +26,46 @@ if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
 
 
+class RunData(Protocol):
+    """A run in a folder or in memory: what figures show, and what a notebook asks of either."""
+
+    if TYPE_CHECKING:  # a property here would be in the way of a field of the same name
+
+        @property
+        def name(self) -> str: ...
+        @property
+        def status(self) -> str: ...
+        @property
+        def case(self) -> Case: ...
+        @property
+        def typed_result(self) -> RunResult: ...
+        @property
+        def history(self) -> History: ...
+        @property
+        def slenderness_angle(self) -> float: ...
+        @property
+        def rigid_check(self) -> dict[str, FloatArray] | None: ...
+        def frame(self, time: float) -> Frame: ...
+
+    @property
+    def verdict(self) -> Verdict:
+        """Outcome, extremes and events: `run.verdict.sure`, or by its key in the file, `run.verdict["sure"]`."""
+        return self.typed_result.verdict or Verdict()
+
+    def _repr_html_(self) -> str:
+        """Its line, and the card of the verdict."""
+        return f"<p>{escape(repr(self))}</p><p>{self.verdict._repr_html_()}</p>"
+
+    def grid(self, time: float) -> "UnstructuredGrid":
+        """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.
+
+        `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`; errors as `frame`.
+        """
+        return pyvista_grid(self.frame(time))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class OpenedRun:
+class OpenedRun(RunData):
     """The folder of a run, read when it is asked for.
 
     Every property raises FolderError, with the file and the way out, if that file is missing or damaged.
@@ -40,10 +78,6 @@ class OpenedRun:
         """One line, for a notebook."""
         suffix = f", {self.verdict.outcome}" if self.verdict.outcome else ""
         return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{suffix}>"
-
-    def _repr_html_(self) -> str:
-        """That line, and the card of the verdict."""
-        return f"<p>{escape(repr(self))}</p><p>{self.verdict._repr_html_()}</p>"
 
     @property
     def folder(self) -> Path:
@@ -64,11 +98,6 @@ class OpenedRun:
     def typed_result(self) -> RunResult:
         """The result as typed data; what the run has not reached is None."""
         return typed_result(RunResult, self.result, self.place.result)
-
-    @property
-    def verdict(self) -> Verdict:
-        """Outcome, extremes and events: `run.verdict.sure`, or by its key in the file, `run.verdict["sure"]`."""
-        return self.typed_result.verdict or Verdict()
 
     @property
     def slenderness_angle(self) -> float:
@@ -138,13 +167,6 @@ class OpenedRun:
             raise FolderError(f"{self.place.fields}: {error}") from None
         return self.fields.frame(index)
 
-    def grid(self, time: float) -> "UnstructuredGrid":
-        """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.
-
-        `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`
-        """
-        return pyvista_grid(self.frame(time))
-
 
 def open_run(folder: str | Path) -> OpenedRun:
     """Open the folder of a run.
@@ -169,27 +191,6 @@ def open_run(folder: str | Path) -> OpenedRun:
             )
     place = RunFiles(path)
     return OpenedRun(place=place, result=read_result(place.result))
-
-
-class RunData(Protocol):
-    """What the figures show: of a run in a folder, or in memory."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def status(self) -> str: ...
-    @property
-    def case(self) -> Case: ...
-    @property
-    def typed_result(self) -> RunResult: ...
-    @property
-    def verdict(self) -> Verdict: ...
-    @property
-    def history(self) -> History: ...
-    @property
-    def slenderness_angle(self) -> float: ...
-    @property
-    def rigid_check(self) -> dict[str, FloatArray] | None: ...
 
 
 def _unreadable(path: Path, error: Exception) -> str:

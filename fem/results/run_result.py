@@ -246,9 +246,8 @@ class AnalyticBlock(JsonBlock):
     outcome: Outcome | None = None  #: None: it left the floor
     rotation_ratio: float | None = None  #: up to there
     max_slip_m: float | None = None
-    friction_needed: float | None = (
-        None  #: largest |T|/N of the block if it cannot slide; None where it overturns
-    )
+    #: largest |T|/N of the block if it cannot slide; None where it overturns
+    friction_needed: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -361,9 +360,8 @@ class Numerics(JsonBlock):
     contact_frequency_Hz: float | None = None
     bounce_frequency_Hz: float | None = None  #: of the container on one corner, shell and floor in series
     bounce_container_damping_ratio: float | None = None  #: what steel and fill take of it
-    bounce_contact_damping_ratio: float | None = (
-        None  #: .. and the floor, or the dashpot of the numerical penalty
-    )
+    #: .. and the floor, or the dashpot of the numerical penalty
+    bounce_contact_damping_ratio: float | None = None
     static_penetration_m: float | None = None
     max_penetration_m: float | None = None
     elastic_frequencies_Hz: tuple[float, ...] = ()

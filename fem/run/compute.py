@@ -11,7 +11,6 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from contact.motion.base_motion import BaseMotion
@@ -33,8 +32,8 @@ from fem.model.support import normal_penalty
 from fem.results.fields import Fields, Frame, FrameKeeper
 from fem.results.history import History
 from fem.results.kinds import RUN
-from fem.results.reader import pyvista_grid
-from fem.results.run_result import LinkResult, Numerics, RigidCheckResult, RunResult, Verdict
+from fem.results.reader import RunData
+from fem.results.run_result import LinkResult, Numerics, RigidCheckResult, RunResult
 from fem.run.band import ChangedRunsFile, rests_far_below_limits, wants_band, with_band
 from fem.run.card import with_words
 from fem.run.described import sides_of
@@ -58,7 +57,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fem.results.reader import UnstructuredGrid
     from fem.run.rigid_check import RigidCheck
 
 
@@ -256,7 +254,7 @@ def wants_rigid_check(choice: bool, case: Case) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
+class Run(RunData):
     """A finished run in memory. SI units; x to the right, z up, rotation > 0 toward +x."""
 
     case: Case  #: with every default and "auto" replaced
@@ -268,19 +266,10 @@ class Run:
         """One line, for a notebook."""
         return f"<run {self.case.name!r}: {self.status}, {self.verdict.outcome}>"
 
-    def _repr_html_(self) -> str:
-        """That line, and the card of the verdict."""
-        return f"<p>{escape(repr(self))}</p><p>{self.verdict._repr_html_()}</p>"
-
     @property
     def status(self) -> str:
         """Status of the run: completed | overturned | failed; `run.result["error"]` says why it failed."""
         return self.typed_result.status
-
-    @property
-    def verdict(self) -> Verdict:
-        """Outcome, extremes and events: `run.verdict.sure`, or by its key in the file, `run.verdict["sure"]`."""
-        return self.typed_result.verdict or Verdict()
 
     @property
     def result(self) -> dict[str, Any]:
@@ -314,16 +303,6 @@ class Run:
     def plot(self, name: str = "rotation", ax: "Axes | None" = None) -> "Figure":
         """A figure of the run, see `plotted`: `run.plot("slip").savefig("slip.png")`."""
         return plotted(self, name, ax)
-
-    def grid(self, time: float) -> "UnstructuredGrid":
-        """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.
-
-        `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`
-
-        Raises:
-            FieldError: there is no frame of that time; a ValueError.
-        """
-        return pyvista_grid(self.frame(time))
 
 
 def compute(

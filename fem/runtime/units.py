@@ -23,9 +23,8 @@ class DisplayUnit:
     figures: int = MANY  #: significant figures, without trailing zeros where they are four
     under: str = "<"  #: the word before that limit
     whole: bool = False  #: it counts
-    long: str = (
-        ""  #: the unit a thousand times as large, for sizes from there on; tables of one unit keep this one
-    )
+    #: the unit a thousand times as large, for sizes from there on; tables of one unit keep this one
+    long: str = ""
 
     def text(
         self,

@@ -1,8 +1,8 @@
 """Seismic action at a site: elastic spectra, ground displacement, factors; or the spectrum of a floor that is given.
 
 EN 1998-1:2004, 3.2.2.2 to 3.2.2.5 and Annex A, recommended values of tables 3.2 to 3.4; the zones and subsoils of
-DIN EN 1998-1/NA:2011; or parameters of another annex. Accelerations are magnitudes in m/s2, periods in s, damping
-ratios of critical damping.
+DIN EN 1998-1/NA:2011; or parameters of another annex. All spectra are for 5 % of critical damping, where eta of (3.6)
+is 1. Accelerations are magnitudes in m/s2, periods in s.
 
 The given spectrum of a floor belongs to the floor on which a body stands, so no building filters it again and no factor
 is applied to it. Between its points logarithms are straight over logarithms; before the first the floor moves as one
@@ -23,7 +23,6 @@ from fem.runtime.user_files import read_regular
 
 DAMPING_RATIO = 0.05  #: damping of the spectra to which motions are matched (3.2.3.1.2)
 PLATEAU, VERTICAL_PLATEAU = 2.5, 3.0  #: amplification of the plateau, horizontal (3.3) and vertical (3.9)
-LEAST_DAMPING_CORRECTION = 0.55  #: (3.6)
 #: range of the formulas (3.2) to (3.5); Annex A continues from there
 LAST_PERIOD_S, LAST_PERIOD_ANNEX_A_S = 4.0, 10.0
 FACTORS = (0.5, 2.0)  #: gamma_I and gamma_a that are accepted
@@ -239,54 +238,38 @@ class SiteAction:
         _, third, fourth = self.shape.corner_periods
         return 0.025 * self.surface_acceleration * third * fourth
 
-    def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+    def horizontal(self, periods: FloatArray) -> FloatArray:
         """Horizontal elastic spectrum S_e (3.2) to (3.5), beyond 4 s Annex A, at the periods (n,) [s]; (n,) [m/s2].
 
         Where no T_E is known, the displacement stays constant beyond 4 s, which is not below Annex A.
         """
-        corners, eta = self.shape.corner_periods, damping_correction(damping_ratio)
-        spectrum = self._elastic(periods, self.surface_acceleration, self.shape.plateau, corners, eta)
+        corners, plateau = self.shape.corner_periods, self.shape.plateau
+        spectrum = self._elastic(periods, self.surface_acceleration, plateau, corners)
         if self.shape.annex_a_corner is None:
             return spectrum
         begin = self.shape.annex_a_corner
         share = np.clip((periods - begin) / (LAST_PERIOD_ANNEX_A_S - begin), 0.0, 1.0)  # (A.1), (A.2)
-        displacement = self.ground_displacement * (PLATEAU * eta + share * (1.0 - PLATEAU * eta))
+        displacement = self.ground_displacement * (PLATEAU + share * (1.0 - PLATEAU))
         beyond = periods >= begin
         spectrum[beyond] = displacement[beyond] * (2.0 * math.pi / periods[beyond]) ** 2
         return spectrum
 
-    def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+    def vertical(self, periods: FloatArray) -> FloatArray:
         """Vertical elastic spectrum S_ve (3.8) to (3.11) at the periods (n,) [s], shape (n,) [m/s2]."""
-        corners, eta = self.shape.vertical_corner_periods, damping_correction(damping_ratio)
-        return self._elastic(periods, self.vertical_acceleration, self.shape.vertical_plateau, corners, eta)
+        corners, plateau = self.shape.vertical_corner_periods, self.shape.vertical_plateau
+        return self._elastic(periods, self.vertical_acceleration, plateau, corners)
 
     def _elastic(
-        self,
-        periods: FloatArray,
-        peak: float,
-        plateau: float,
-        corners: tuple[float, float, float],
-        eta: float,
+        self, periods: FloatArray, peak: float, plateau: float, corners: tuple[float, float, float]
     ) -> FloatArray:
         """(3.2) to (3.5), or (3.8) to (3.11), at the periods (n,); `peak` at T = 0 [m/s2], and on to T_A."""
         first, second, third = corners
-        flat, flat_to = plateau * peak * eta, self.shape.flat_to
+        flat, flat_to = plateau * peak, self.shape.flat_to
         way = np.maximum(periods - flat_to, 0.0) / (first - flat_to)
-        rising = peak * (1.0 + way * (plateau * eta - 1.0))
+        rising = peak * (1.0 + way * (plateau - 1.0))
         with np.errstate(divide="ignore"):
             falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
         return np.where(periods < first, rising, np.where(periods <= second, flat, falling))
-
-
-def damping_correction(damping_ratio: float) -> float:
-    """eta of (3.6): 1 at 5 % damping, at least 0.55.
-
-    Raises:
-        ValueError: a damping ratio that is negative or 1 and more.
-    """
-    if not 0.0 <= damping_ratio < 1.0:
-        raise ValueError(f"the damping ratio must lie between 0 and 1, got {damping_ratio:g}")
-    return max(math.sqrt(10.0 / (5.0 + 100.0 * damping_ratio)), LEAST_DAMPING_CORRECTION)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -323,23 +306,22 @@ class FloorSpectrum:
         """Peak of the floor [m/s2]."""
         return self.accelerations[0]
 
-    def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
-        """Horizontal spectrum at periods (n,) [s], shape (n,) [m/s2]; at another damping corrected by (3.6)."""
-        return self._at(periods, self.accelerations, damping_ratio)
+    def horizontal(self, periods: FloatArray) -> FloatArray:
+        """Horizontal spectrum at periods (n,) [s], shape (n,) [m/s2]."""
+        return self._at(periods, self.accelerations)
 
-    def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+    def vertical(self, periods: FloatArray) -> FloatArray:
         """Vertical spectrum at periods (n,) [s], shape (n,) [m/s2]; that of the ground where none is given."""
         if not self.vertical_accelerations:
-            return self.ground.vertical(periods, damping_ratio)
-        return self._at(periods, self.vertical_accelerations, damping_ratio)
+            return self.ground.vertical(periods)
+        return self._at(periods, self.vertical_accelerations)
 
-    def _at(self, periods: FloatArray, values: Sequence[float], damping_ratio: float) -> FloatArray:
+    def _at(self, periods: FloatArray, values: Sequence[float]) -> FloatArray:
         first, last = self.periods[0], self.periods[-1]
         inside = np.log(np.clip(periods, first, last))
         spectrum = np.exp(np.interp(inside, np.log(self.periods), np.log(values)))
         slower = np.minimum(last / np.maximum(periods, first), 1.0) ** 2
-        share = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
-        return np.asarray(share * spectrum * slower)
+        return np.asarray(spectrum * slower)
 
 
 #: what motions are made to fit: elastic spectra, and the peak that belongs to them

@@ -51,7 +51,7 @@ def scaled_records(
     target = action.horizontal(periods)
     scaled = []
     for record in records:
-        spectrum = response_spectrum(record.step, record.horizontal, periods).pseudo_acceleration_m_s2
+        spectrum = response_spectrum(record.step, record.horizontal, periods)
         scaled.append(record.scaled(math.exp(float(np.mean(np.log(target / spectrum))))))
     needed = check_set(scaled, action, longest=longest).factor_needed
     return [record.scaled(needed) for record in scaled]

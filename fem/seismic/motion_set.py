@@ -115,7 +115,7 @@ def check_set(
 
     def spectra(target: FloatArray, name: str) -> ComponentSpectra:
         pairs = ((motion.step, getattr(motion, name)) for motion in motions)
-        found = [response_spectrum(*pair, periods).pseudo_acceleration_m_s2 for pair in pairs]
+        found = [response_spectrum(*pair, periods) for pair in pairs]
         return ComponentSpectra(target=target, motions=np.array(found))
 
     horizontal = spectra(action.horizontal(periods), "horizontal")

@@ -127,7 +127,7 @@ def _mean_peak(components: Iterable[FloatArray]) -> float:
 
 def _mean_spectrum(components: Iterable[tuple[float, FloatArray]], periods: FloatArray) -> tuple[float, ...]:
     """Of components with their steps, at 5 % damping."""
-    spectra = [response_spectrum(*component, periods).pseudo_acceleration_m_s2 for component in components]
+    spectra = [response_spectrum(*component, periods) for component in components]
     return _numbers(np.mean(spectra, axis=0))
 
 

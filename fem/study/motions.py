@@ -191,8 +191,6 @@ def _read(make: CaseMaker, keys: Mapping[str, Any]) -> FloorMotionPair:
 
 def _spectra(make: CaseMaker, periods: FloatArray, keys: Mapping[str, Any]) -> list[FloatArray]:
     return [
-        response_spectrum(
-            *evenly_sampled(motion.times, motion.accelerations), periods
-        ).pseudo_acceleration_m_s2
+        response_spectrum(*evenly_sampled(motion.times, motion.accelerations), periods)
         for _, motion in _components(make(keys))
     ]

@@ -103,7 +103,12 @@ def four_models(experiments: Experiments) -> Evidence:
     case = load_case("seed_stack_plateau", ["output.fields_s=0"])
     found = side_by_side(case)
     rows = [
-        [one.model, one.outcome, one.rotation_ratio, one.max_slip_m, one.margin, one.flight_share]
+        [
+            one.model,
+            *(one.found[key] for key in ("outcome", "rotation_ratio", "max_slip_m")),
+            one.margin,
+            one.found.flight_share,
+        ]
         for one in found
     ]
     equal = side_by_side(case.replace({"contact.mu_kinetic": case.contact.mu_static}))[1:]
@@ -115,7 +120,7 @@ def four_models(experiments: Experiments) -> Evidence:
     yield (
         f"{compared_in_words(case, found)} The rigid models keep to mu_s and rock; a landing of the elastic container "
         "takes the load off a corner for an instant. With mu_k = 0.4 the rigid body and both elastic containers reach "
-        f"{', '.join(f'{one.rotation_ratio:.3f}' for one in equal)} of the slenderness angle."
+        f"{', '.join(f'{one.found.rotation_ratio:.3f}' for one in equal)} of the slenderness angle."
     )
 
 

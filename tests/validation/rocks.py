@@ -76,8 +76,7 @@ def compute(folder: Path | None) -> Experiment:
     targets = ~fitted if series.set_apart else every
     sampled = [evenly_sampled(test.times, test.acceleration) for test in series.tests]
     spectra = [
-        [response_spectrum(step, values, PERIODS, ratio).pseudo_acceleration_m_s2 for step, values in sampled]
-        for ratio in RATIOS
+        [response_spectrum(step, values, PERIODS, ratio) for step, values in sampled] for ratio in RATIOS
     ]
     #: measures of strength on which a threshold is fitted, each (tests,), by the predictor that chooses among them
     measures = {

@@ -9,7 +9,6 @@ from fem.seismic.action import (
     FloorSpectrum,
     SiteAction,
     SpectrumShape,
-    damping_correction,
     eurocode_shape,
     german_shape,
     read_spectrum,
@@ -92,16 +91,6 @@ def test_displacement_beyond_four_seconds_falls_to_that_of_the_ground():
     np.testing.assert_allclose(displacement, [exact, exact, 0.135, 0.0945, 0.054, 0.054], rtol=1e-12)
 
 
-def test_damping_correction():
-    etas = {0.02: 1.1952, 0.03545: 1.0818, 0.05: 1.0, 0.1: 0.8165, 0.2: 0.6325, 0.28: 0.5505, 0.4: 0.55}
-    for ratio, eta in etas.items():
-        assert damping_correction(ratio) == pytest.approx(eta, abs=5.1e-5)
-        found = unit_action(1, "D").horizontal(np.array([0.0, 0.5]), ratio)
-        assert found == pytest.approx([1.35, 3.375 * eta], rel=1e-4)
-    with pytest.raises(ValueError, match="between 0 and 1"):
-        damping_correction(1.0)
-
-
 def test_factors_multiply_the_reference_acceleration_of_a_spectrum_without_annex_a():
     shape = SpectrumShape(
         soil_factor=1.35,
@@ -141,8 +130,6 @@ def test_logarithms_are_straight_between_the_points_and_the_displacement_stays_b
     assert target.horizontal(np.array([0.2]))[0] == pytest.approx(np.sqrt(40.0))  # between 0.1 and 0.4 s
     np.testing.assert_allclose(target.horizontal(np.array([0.0, 0.01, 4.0])), [3.0, 3.0, 0.5])
     assert target.surface_acceleration == 3.0
-    # (3.6) at 10 %: sqrt(10/15)
-    assert target.horizontal(np.array([0.4]), 0.1)[0] == pytest.approx(10.0 * np.sqrt(2.0 / 3.0))
 
 
 def test_the_vertical_is_that_of_the_ground_unless_it_is_given():
