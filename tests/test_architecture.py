@@ -129,7 +129,7 @@ BUDGET = {
     "site": ("fem/site", 4_372, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_785, 42),
     "product": ("mesh contact fem", 51_835, 1_525),
-    "tests": ("tests", 35_675, 2_094),
+    "tests": ("tests", 35_982, 2_121),
 }
 
 

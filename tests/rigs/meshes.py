@@ -93,8 +93,8 @@ def tangent(elements: FiniteElements, displacement: FloatArray) -> csc_array:
     left = lame.shear * np.einsum("im...,km...->ik...", deformation, deformation)
     for j in range(2):
         moduli[:, j, :, j] += left
-        for i, l in np.ndindex(2, 2):  # noqa: E741 - the fourth index of the tensor
-            moduli[i, j, i, l] += stress[j][l]
+        for i, n in np.ndindex(2, 2):
+            moduli[i, j, i, n] += stress[j][n]
     moduli *= elements.weights
     cells, k = elements.cells.shape
     rows = elements.gradient.transpose(1, 3, 0, 2).reshape(cells, k, -1)

@@ -9,6 +9,7 @@ import numpy as np
 from block_on_floor import GRAVITY, Block, Motion, contact_of, limits_of
 
 from contact.arrays import FloatArray
+from contact.interface.faces import points_of_joint
 from contact.motion.base_motion import NoMotion
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import make_state
@@ -125,3 +126,8 @@ def stack_rig(
         ),
     )
     return StackRig(stack, run, whole)
+
+
+def joint_force(rig: StackRig, joint: int) -> FloatArray:
+    """Tangential and normal force of a joint now [N]."""
+    return rig.run.old.force[points_of_joint(joint)].sum(axis=0)

@@ -31,6 +31,14 @@ def test_the_mass_centre_of_a_solid_box_stays_where_it_can_lie():
             build_container(named_case("harmonic", values | {"container.centroid_m": end}))
 
 
+def test_an_impact_never_gives_more_than_there_was():
+    """Of a slender container, which loses next to nothing, and of a low one; not on a base without Housner's impact."""
+    slender = ends("harmonic", FRICTION | {"container.width_m": 0.4, "container.boxes": 6})
+    assert 1.0 < slender["contact.restitution_over_housner"][1] < 1.01
+    flat = ends("harmonic", FRICTION | {"support.kind": "flat"})
+    assert "contact.restitution_over_housner" not in flat
+
+
 SLAB = FRICTION | {"floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.1, 0.2]}
 
 

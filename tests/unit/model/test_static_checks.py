@@ -7,9 +7,11 @@ from cases import named_case
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fem.case.case import load_case
 from fem.case.tables.run_tables import StaticTable
 from fem.case.validation import CaseError
 from fem.model.geometry import build_container
+from fem.model.motion import build_motions, peaks_in_run
 from fem.model.static_checks import static_checks, static_checks_of
 from fem.run.described import code_note
 
@@ -34,6 +36,12 @@ def block(width=1.0, height=4.0, mass=1000.0, **changes):
         "code": CODE,
     }
     return static_checks(**(arguments | changes))
+
+
+def test_uplift_acceleration_is_where_the_own_motion_just_overturns():
+    uplift = block().uplift_acceleration
+    assert block(peak_floor_acceleration=uplift).own_motion.overturning.utilisation == pytest.approx(1.0)
+    assert uplift == pytest.approx(9.81 / 4.0)
 
 
 SLOPE = math.atan(0.02)
@@ -113,6 +121,17 @@ def test_a_floor_that_falls_with_gravity_leaves_no_capacity():
     assert static.own_motion_vertical.overturning.utilisation == math.inf
     assert static.to_result().own_motion_vertical.least_weight_N == 0.0
     assert block().own_motion_vertical is None
+
+
+@pytest.mark.parametrize(
+    ("name", "utilisation"), [("seed_box", 0.2224), ("seed_stack", 0.8896), ("seed_stack_plateau", 1.4828)]
+)
+def test_shipped_cases_have_the_utilisation_of_the_paper_container(name, utilisation):
+    # M x_b'' z_c/(G a/2) = (peak/g) (2 z_c/a): it depends neither on the walls nor on the position of the fill.
+    case = load_case(name)
+    static = static_checks_of(case, build_container(case), *peaks_in_run(case, *build_motions(case)))
+    assert static.own_motion.overturning.utilisation == pytest.approx(utilisation, abs=1e-4)
+    assert static.weight == pytest.approx(case.container.boxes * 24525.0, rel=1e-9)
 
 
 @pytest.mark.parametrize(("shape", "base"), [("prism", 2.1), ("cylinder", 1.2)])

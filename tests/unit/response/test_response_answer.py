@@ -75,6 +75,12 @@ def test_its_chaos_has_no_period():
     assert found.settling is not None and 0.5 < found.settling < 2.0
 
 
+def test_an_irrational_rotation_has_no_period():
+    angle = 2.0 * np.pi * 0.5 * (np.sqrt(5.0) - 1.0) * np.arange(48)
+    found = classify(np.column_stack([np.cos(angle), np.sin(angle)]), resting=False)
+    assert found.long_time == "not periodic"
+
+
 def test_a_spiral_towards_a_fixed_point_is_not_settled():
     spiral = 0.95 ** np.arange(48)[:, None] * np.column_stack([np.cos(np.arange(48)), np.sin(np.arange(48))])
     found = classify(spiral, resting=False)

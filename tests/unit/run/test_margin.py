@@ -5,8 +5,11 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from closed_forms import first_swing_threshold
+from floors import half_sine_pulse
 
 import fem
+from contact.reference.rigid_block import RigidBlock
 from fem.case.strength import scaled_motion
 from fem.case.uncertainty import all_changes, as_changed
 from fem.model.model import build_model
@@ -19,6 +22,9 @@ from fem.run.compute import Run
 RIGID = ["solver.model=rigid", "floor.kind=rigid", "output.fields_s=0"]
 
 
+PULSE = [*RIGID, "contact.mu_static=2", "motion.kind=pulse", "motion.shape=half-sine", "motion.pulse_s=0.4"]
+
+
 def computed(*changes: str, name: str = "rocking", **wanted) -> Run:
     return fem.compute(fem.load_case(name, [*RIGID, *changes]), **({"band": False, "margin": True} | wanted))
 
@@ -26,6 +32,24 @@ def computed(*changes: str, name: str = "rocking", **wanted) -> Run:
 def outcome_at(run: Run, factor: float) -> str:
     scaled = run.case.replace(scaled_motion(run.case, factor))
     return fem.compute(scaled, band=False, margin=False).verdict.outcome
+
+
+def test_a_pulse_overturns_at_the_threshold_of_the_analytic_block():
+    peak = 3.0
+    run = computed(*PULSE, f"motion.peak_acceleration_m_s2={peak}")
+    width, height = run.case.container.width_m, 2.0 * run.typed_result.static.centroid_m
+    threshold = first_swing_threshold(
+        RigidBlock.homogeneous(width=width, height=height, gravity=9.81),
+        lambda a: half_sine_pulse(peak=a, duration=0.4),
+        low=peak,
+        high=4.0 * peak,
+        duration=20.0,
+    )
+    margin = run.verdict.margin
+    assert margin.stands_up_to * peak <= 1.005 * threshold
+    assert threshold <= 1.005 * margin.factor * peak
+    assert margin.factor / margin.stands_up_to <= 1.0 / (1.0 - search.RESOLUTION)
+    assert (margin.governing.of, margin.governing.factor) == ("case", margin.factor)
 
 
 @pytest.mark.parametrize("peak", ["6.4", "10.6"])
@@ -36,7 +60,8 @@ def test_the_factors_are_those_of_runs_on_their_own(peak):
     assert outcome_at(run, margin.factor) == "overturned"
     assert outcome_at(run, margin.stands_up_to) != "overturned"
     assert margin.factor / margin.stands_up_to <= 1.0 / (1.0 - search.RESOLUTION)
-    assert margin.governing.step is not None and margin.governing.step < 0.06
+    # each step of the first scan is halved at least twice
+    assert 0.0 < margin.governing.step <= (search.STEP - 1.0) / 4
     for low, high in margin.islands:
         assert "overturned" not in (outcome_at(run, low), outcome_at(run, high))
 

@@ -105,6 +105,16 @@ def test_internal_force_is_the_derivative_of_the_strain_energy(order, strain):
 
 
 @ORDERS
+def test_internal_force_of_a_free_body_has_no_resultant_and_no_moment(order):
+    elements = assemble(distorted_mesh(), order=order, **STEEL)
+    displacement = strained_and_turned(elements, strain=0.02)
+    force, place = internal_force(elements, displacement), elements.nodes + displacement
+    assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
+    moments = place[:, 1] * force[:, 0] - place[:, 0] * force[:, 1]
+    assert abs(moments.sum()) < 1e-12 * np.abs(moments).sum()
+
+
+@ORDERS
 def test_thickness_belongs_to_each_cell(order):
     # A bar of two thicknesses in series, nu = 0: end displacement F (L1/(E t1 h) + L2/(E t2 h)).
     mesh = quad_mesh(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5]))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from scipy.special import log_ndtr
-from scipy.stats import qmc
+from scipy.stats import binom, qmc
 
 from fem.runtime.intervals import binomial_interval, estimate, least_draws, replicate_interval
 from fem.study.fragility import Lognormal, falls, fit_lognormal, misses
@@ -12,6 +12,11 @@ from fem.study.fragility import Lognormal, falls, fit_lognormal, misses
 STRENGTHS = np.linspace(2.0, 10.0, 17)
 TRUTH = Lognormal(median=5.0, deviation=0.3)
 DRAWS = np.full(17, 200.0)
+
+
+def test_exact_shares_give_the_curve_back():
+    found = fit_lognormal(STRENGTHS, 200.0 * TRUTH.probability(STRENGTHS), DRAWS)
+    assert (found.median, found.deviation) == (pytest.approx(5.0, rel=1e-6), pytest.approx(0.3, rel=1e-6))
 
 
 def test_the_fit_has_the_largest_likelihood():
@@ -55,6 +60,16 @@ def test_an_island_of_standing_is_reported_and_misses_the_curve():
 def test_clopper_and_pearsons_intervals_are_those_of_the_tables(count, draws, low, high):
     # Two-sided 95 per cent limits, as in the tables of Documenta Geigy and from 1 - (0.025)^(1/n) at no event.
     assert binomial_interval(count, draws, 0.95) == pytest.approx((low, high), abs=1e-5)
+
+
+@pytest.mark.parametrize("probability", [0.01, 0.05, 0.3, 0.5])
+def test_they_hold_the_truth_at_least_as_often_as_they_say(probability):
+    draws = 60
+    counts = np.arange(draws + 1)
+    held = [
+        low <= probability <= high for low, high in (binomial_interval(int(k), draws, 0.95) for k in counts)
+    ]
+    assert binom.pmf(counts, draws, probability)[held].sum() >= 0.95
 
 
 @pytest.mark.slow

@@ -57,6 +57,19 @@ def placed(faces: Faces, corners: FloatArray) -> FloatArray:
 
 
 @pytest.mark.parametrize("seed", range(5))
+def test_contact_points_move_as_their_derivatives_say(seed):
+    faces, corners = faces_of(undeformed()), moved_apart(seed)
+    push = np.random.default_rng(seed + 100).normal(size=corners.shape)
+    step = 1e-6
+    linearise_points(faces, corners, np.zeros((faces.weight.size, 2)))
+    expected = (placed(faces, corners + step * push) - placed(faces, corners - step * push)) / (2.0 * step)
+    for i, (corner, gradient) in enumerate(zip(faces.corner, faces.gradient, strict=True)):
+        count = 3 if i > 1 else 1
+        found = np.einsum("akd,kd->a", gradient[:, :count], push[corner[:count]])
+        assert found == pytest.approx(expected[i], abs=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(5))
 def test_the_compliance_of_the_points_is_how_they_move_under_forces(seed):
     faces, corners = faces_of(undeformed()), moved_apart(seed)
     draw = np.random.default_rng(seed)

@@ -55,6 +55,15 @@ def test_a_floor_that_crushes_bears_the_cap_and_no_more(share, penetration, rate
     assert capped == (elastic if elastic[0] < cap else (cap, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("rate", [-2.0, 2.0, 20.0])  # leaving, entering, and within its first step
+def test_the_cap_bounds_the_spring_and_the_dashpot_together(rate):
+    spring, whole = STIFFNESS * 1e-2, normal(1e-2, rate)[0]
+    cap = (spring + whole) / 2.0
+    assert (
+        laws.normal_force(1e-2, rate, STIFFNESS, DAMPING, cap, STEP)[0] == min(whole, cap) != min(spring, cap)
+    )
+
+
 @pytest.mark.parametrize("penetration", DECADES)
 def test_the_force_is_continuous_where_the_dashpot_takes_over(penetration):
     rate = penetration / STEP
@@ -70,6 +79,19 @@ def test_return_mapping_stays_in_the_cone_and_moves_no_admissible_force(trial, l
         assert (force, by_trial, by_limit) == (trial, 1.0, 0.0)
     else:
         assert (force, by_trial, by_limit) == (math.copysign(limit, trial), 0.0, math.copysign(1.0, trial))
+
+
+@pytest.mark.parametrize("limit", 10.0 ** np.arange(-3.0, 7.0))
+@pytest.mark.parametrize("share", [-30.0, -1.01, -0.99, -1e-3, 1e-3, 0.99, 1.01, 30.0])
+def test_return_mapping_tangents_are_derivatives(limit, share):
+    trial = share * limit
+    _, by_trial, by_limit = laws.stick_friction(trial, limit)
+    assert by_trial == pytest.approx(
+        central_difference(lambda t: laws.stick_friction(t, limit)[0], trial), abs=1e-9
+    )
+    assert by_limit == pytest.approx(
+        central_difference(lambda m: laws.stick_friction(trial, m)[0], limit), abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("steps", [1e-3, 0.1, 1.0, 5.0])

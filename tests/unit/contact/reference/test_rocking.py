@@ -15,8 +15,19 @@ from contact.reference.rocking import simulate_rocking
 GRAVITY = 9.81
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 ANGLE = STACK.slenderness_angle
+HALF = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
 TIMES = np.linspace(0.0, 4.0, 201)
 SHAKING = sine_floor(amplitude=0.1, angular_frequency=8.0)
+
+
+def test_seed_paper_box_and_stack():
+    # p = sqrt(3g/(4R)), e = 1 - 1.5 sin^2 al with g = 9.81 for 1.1 x 1.0 m and four of them stacked.
+    box = RigidBlock.homogeneous(width=1.1, height=1.0)
+    assert box.frequency_parameter == pytest.approx(3.14617, abs=5e-6)
+    assert STACK.frequency_parameter == pytest.approx(1.88337, abs=5e-6)
+    assert box.housner_restitution == pytest.approx(0.17873, abs=5e-6)
+    assert STACK.housner_restitution == pytest.approx(0.89454, abs=5e-6)
+    assert STACK.uplift_acceleration == pytest.approx(9.81 * 1.1 / 4.0, rel=1e-14)
 
 
 def test_restitution_keeps_angular_momentum_about_the_new_corner():
@@ -84,6 +95,21 @@ def test_squat_block_lies_down_at_its_first_impact():
     assert len(motion.impacts) == 1
 
 
+def test_a_push_stops_after_the_distance_that_friction_allows():
+    motion = simulate_sliding(HALF, still_floor(), duration=2.0, slip_velocity=1.5)
+    assert motion.largest_slip == pytest.approx(1.5**2 / (2.0 * 0.2 * GRAVITY), rel=1e-12)
+    assert motion.intervals[0].end == pytest.approx(1.5 / (0.2 * GRAVITY), rel=1e-12)
+    assert [interval.direction for interval in motion.intervals] == [1, 0]
+
+
+def test_sticking_holds_between_kinetic_and_static_limit_but_sliding_goes_on_there():
+    # 0.3 g lies between mu_k g and mu_s g: at rest it sticks, pushed the same way it accelerates.
+    floor = rectangular_pulse(peak=-0.3 * GRAVITY, duration=5.0)
+    assert simulate_sliding(HALF, floor, duration=5.0).largest_slip == 0.0
+    pushed = simulate_sliding(HALF, floor, duration=1.0, slip_velocity=0.1)
+    assert pushed.at(np.array([1.0]))[1][0] == pytest.approx(0.1 + 0.1 * GRAVITY, rel=1e-12)
+
+
 def stack(gravity):
     return RigidBlock.homogeneous(width=1.1, height=4.0, gravity=gravity)
 
@@ -111,6 +137,15 @@ def test_a_constant_vertical_acceleration_is_another_gravity(moves, within, vert
     heavier = moves(GRAVITY + vertical, SHAKING)
     assert moves(GRAVITY, lifted) == pytest.approx(heavier, abs=within, nan_ok=True)
     assert np.nanmax(np.abs(heavier)) > 0.01
+
+
+def test_a_slider_loses_what_friction_takes_of_a_changing_weight():
+    # v' = -mu (g + a_v): with one sine pulse upward the velocity falls by mu (g T + 2 peak L/pi).
+    floor = still_floor().with_vertical(half_sine_pulse(peak=5.0, duration=0.3, delay=0.1))
+    slider = RigidSlider(mu_static=0.25, mu_kinetic=0.25, gravity=GRAVITY)
+    motion = simulate_sliding(slider, floor, duration=0.5, slip_velocity=3.0)
+    velocity = float(motion.at(np.array([0.5]))[1][0])
+    assert velocity == pytest.approx(3.0 - 0.25 * (GRAVITY * 0.5 + 5.0 * 0.6 / math.pi), rel=1e-11)
 
 
 @pytest.mark.parametrize("push", [0.0, 1.0])

@@ -1,10 +1,12 @@
-"""A loose stack as a body of the stepping: what does not settle, its energy, scratch of its own."""
+"""A loose stack as a body of the stepping: settled start, equilibrium of the boxes, one box, scratch."""
 
 import numpy as np
 import pytest
-from stack_on_floor import Box, stack_rig
+from block_on_floor import GRAVITY
+from stack_on_floor import Box, joint_force, stack_rig
 
 from contact.interface.equilibrium import SettlingError
+from contact.interface.faces import points_of_joint
 from contact.motion.base_motion import HarmonicMotion
 from contact.stepping.ledger import BASE_WORK, IMBALANCE, dissipation, spring_energy
 from contact.stepping.loose_stack import stack_with_own_scratch
@@ -18,11 +20,58 @@ MODES[:, 0, 1] = [-0.015, -0.015, 0.02, 0.02]
 ELASTIC = (MODES, np.array([180.0, 260.0]), 0.02)
 
 
+@pytest.mark.parametrize("elastic", [None, ELASTIC], ids=["rigid", "elastic"])
+def test_each_joint_of_a_settled_stack_carries_what_is_above_it(elastic):
+    boxes = [Box(), Box(mass=4000.0, width=0.9, offset=0.1), Box(mass=1000.0, height=0.5, offset=-0.15)]
+    settled = stack_rig(boxes, elastic=elastic)
+    state, n = settled.run.old, len(boxes)
+    for j in range(n):
+        weight = GRAVITY * sum(box.mass for box in boxes[j:])
+        assert joint_force(settled, j) == pytest.approx([0.0, weight], abs=3e-5 * weight)
+    # about the left end of what carries it: the lever rule
+    places = np.cumsum([box.offset for box in boxes])
+    for j in range(n):
+        points = points_of_joint(j)
+        left = places[j] - 0.5 * boxes[j].width
+        x = state.point[points, 0] if j == 0 else _along_floor(settled, points)
+        moment = sum(GRAVITY * box.mass * (at - left) for box, at in zip(boxes[j:], places[j:], strict=True))
+        assert state.force[points, 1] @ (x - left) == pytest.approx(moment, rel=3e-4)
+    scale = np.tile([1.0, 1.0, 1.0, *[50.0] * settled.stack.body.modes], n)  # a mode's is per root of kg
+    assert np.abs(state.acceleration / scale).max() < 1e-9 * GRAVITY
+
+
+def _along_floor(settled, points):
+    return settled.run.old.corner[settled.stack.faces.corner[points, 0], 0]
+
+
 def test_a_box_beyond_the_edge_of_the_one_below_does_not_settle():
     with pytest.raises(SettlingError, match="outside the face below"):
         stack_rig([Box(), Box(offset=0.56)])
     with pytest.raises(SettlingError, match="outside the face below"):
         stack_rig([Box(), Box(offset=0.3), Box(offset=0.55)])
+
+
+@pytest.mark.parametrize("elastic", [None, ELASTIC], ids=["rigid", "elastic"])
+def test_forces_between_boxes_change_neither_momentum_nor_angular_momentum(elastic):
+    """At every look in a violent motion, impacts within: on all boxes together only floor and weight act."""
+    shaken = stack_rig([Box()] * 4, motion=SHAKE, mu=0.5, joint_mu=0.3, elastic=elastic)
+    size, largest = 3 + shaken.stack.body.modes, 0.0
+    for until in np.linspace(0.2, 4.0, 60):
+        shaken.advance(until)
+        state, floor = shaken.run.old, shaken.run.floor[0, 0]
+        external = state.external.reshape(4, size)
+        position = state.position.reshape(4, size)
+        total = external[:, :2].sum(axis=0)
+        on_floor = state.force[:2].sum(axis=0)
+        force = np.abs(state.force).max()
+        assert total == pytest.approx(on_floor, abs=1e-9 * force)
+        turning = external[:, 2].sum() + position[:, 1] @ external[:, 0] - position[:, 0] @ external[:, 1]
+        x = state.point[:2, 0] + floor
+        moment = state.point[:2, 1] @ state.force[:2, 0] - x @ state.force[:2, 1]
+        # arms are those of the last iteration, before the deformation and the rotation that it finds
+        assert turning == pytest.approx(moment, abs=(1e-5 if elastic is None else 1e-4) * force)
+        largest = max(largest, np.abs(position[:, 2]).max())
+    assert largest > 0.05
 
 
 @pytest.mark.parametrize("elastic", [None, ELASTIC], ids=["rigid", "elastic"])
@@ -35,8 +84,9 @@ def test_the_ledger_holds_all_energy(elastic):
 
     start = energy()
     shaken.advance(6.0)
-    gained = run.ledger[BASE_WORK] - dissipation(run.ledger) - run.ledger[IMBALANCE]
-    assert energy() - start == pytest.approx(gained, abs=1e-9 * reference)
+    assert energy() - start == pytest.approx(
+        run.ledger[BASE_WORK] - dissipation(run.ledger) - run.ledger[IMBALANCE], abs=1e-9 * reference
+    )
     assert shaken.joints.max_slip.max() > 0.05
     assert run.clock[0].least_imbalance > -1e-4 * reference
     assert run.clock[0].most_imbalance < 1e-2 * dissipation(run.ledger)
