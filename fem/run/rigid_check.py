@@ -217,7 +217,7 @@ def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
         breaks |= set(data.breaks.tolist())
 
     def acceleration(time: float) -> float:
-        return float(floor_motion(data, time)[2]) if time < driven_until else 0.0
+        return float(floor_motion.call_by_class(data, time)[2]) if time < driven_until else 0.0
 
     return FloorAcceleration(
         function=acceleration,

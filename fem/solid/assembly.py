@@ -130,7 +130,7 @@ class FiniteElements:
         """Row sums of the mass, shape (n,) [kg]."""
         return self.mass @ np.ones(len(self.nodes))
 
-    @property
+    @cached_property
     def vector_mass(self) -> csc_array:
         """Mass for interleaved unknowns, shape (2n, 2n) [kg]."""
         mass = self.mass.tocoo()
