@@ -82,9 +82,9 @@ def _in_unit(value: float | None, unit: DisplayUnit) -> str:
     return number(value, unit.factor, 3)
 
 
-def degrees(value: float | None, figures: int = 4) -> str:
+def degrees(value: float | None) -> str:
     """An angle given in radians."""
-    return quantity(value, "°", 180.0 / math.pi, figures).replace("\u00a0", "")
+    return quantity(value, "°", 180.0 / math.pi, 4).replace("\u00a0", "")
 
 
 def ratio(value: float | None) -> str:

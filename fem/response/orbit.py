@@ -281,13 +281,12 @@ class LongTime:
     settling: float | None  #: distances over the second half by those over the first; None where periodic
 
 
-def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANCE) -> LongTime:
+def classify(sections: FloatArray, *, resting: bool) -> LongTime:
     """Judge a window of sections.
 
     Args:
         sections: (n, k), n at least 4, scaled to order one.
         resting: nothing moved beyond the limits of a verdict.
-        tolerance: of the largest coordinate.
     """
 
     def distances(n: int) -> FloatArray:
@@ -303,7 +302,7 @@ def classify(sections: FloatArray, *, resting: bool, tolerance: float = TOLERANC
     count = len(sections)
     looked_for = min(LARGEST_PERIOD, count // REPEATS)
     scatters = np.array([distances(n).max() for n in range(1, looked_for + 1)])
-    repeating = np.flatnonzero(scatters <= tolerance)
+    repeating = np.flatnonzero(scatters <= TOLERANCE)
     n = int(repeating[0]) + 1 if repeating.size else int(np.argmin(scatters)) + 1
     period = ratio = None
     if resting:

@@ -97,9 +97,9 @@ def _rising_periods(key: str) -> Rule:
     return Rule(f"site.{key}", rising, f"must rise, got {{{key}}}")
 
 
-def _rises(name: str, key: str) -> Rule:
+def _rises(key: str) -> Rule:
     return Rule(
-        f"{name}.{key}",
+        f"friction.{key}",
         lambda table: len(getattr(table, key)) == 1 or getattr(table, key)[0] <= getattr(table, key)[-1],
         lambda table: f"must be [low, high], got {getattr(table, key)}; put the smaller number first",
     )
@@ -328,7 +328,7 @@ class FrictionTable(CaseTable):
     mu_static: FrictionRange = case_key("[low, high], or [value]", example=[0.3, 0.4])
     mu_kinetic_over_static: ShareRange = case_key("[low, high], or [value]", [0.5, 1.0])
 
-    rules = (_rises("friction", "mu_static"), _rises("friction", "mu_kinetic_over_static"))
+    rules = (_rises("mu_static"), _rises("mu_kinetic_over_static"))
 
 
 class LimitsTable(CaseTable):
