@@ -20,7 +20,7 @@ from typing import Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Group, MissingArgumentError, Parameter, UnusedCliTokensError
 
-from fem.runtime.late_modules import load_late
+from fem.runtime.late_modules import LateFinder
 from fem.runtime.left import left_words
 from fem.runtime.memory import limit, memory_of, share_the_heap, shortage
 from fem.runtime.signals import INTERRUPTED, NO_ANSWER, interruptions, raise_on_signal
@@ -225,7 +225,7 @@ def program() -> NoReturn:
     an import that makes a named tuple, however it was caught.
     """
     raise_on_signal(watched=limit() is None)  # a thread takes 70 MB of address space
-    load_late()
+    sys.meta_path.insert(0, LateFinder)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:  # closed

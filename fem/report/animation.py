@@ -233,6 +233,7 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
     modes = sorted(set(history.modes))
     mesh, angle, scale = model.container.mesh, model.static.slenderness_angle, animation.stress_scale
     stresses = 255.0 * np.array(animation.stresses).ravel() / scale if scale else np.zeros(0)
+    bodies = [animation.points[animation.body == k] for k in range(len(animation.centroid))]
     wide = len(animation.points) >= 65536
     index = "<u4" if wide else "<u2"
     # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
@@ -252,9 +253,9 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
             {
                 "suffix": "" if k == 0 else f"_{k + 1}",
                 "corners": animation.corners[k].tolist(),
-                "hull": hull(animation.points[animation.body == k]).tolist(),
+                "hull": points[ConvexHull(points).vertices].tolist(),  # its corners
             }
-            for k in range(len(animation.centroid))
+            for k, points in enumerate(bodies)
         ],
         "body": packed(animation.body, "u1"),
         "rests": animation.rests.tolist(),
@@ -284,11 +285,6 @@ def player_data(animation: Animation, history: History, *, model: Model) -> dict
         "colours": colour_scale("YlGnBu", COLOURS),
         "first": float(history["time_s"][opening]),
     }
-
-
-def hull(points: FloatArray) -> FloatArray:
-    """Corners of the convex hull of points, shape (h, 2)."""
-    return np.asarray(points[ConvexHull(points).vertices])
 
 
 def exaggeration(animation: Animation, height: float) -> float:

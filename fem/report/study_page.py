@@ -516,11 +516,6 @@ def _measures(motions: Sequence[A_ROW]) -> list[Column]:
     ]
 
 
-def _fell(row: A_ROW, name: str) -> bool:
-    """Whether a figure is how far a container fell, which says nothing."""
-    return name == TURNED and row["outcome"] == Outcome.OVERTURNED
-
-
 def share(value: float) -> str:
     """A probability in per cent."""
     return number(value, 100.0, 3)
@@ -546,7 +541,10 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "axis_label": axis_label,
     "cell_label": lambda value: str(value) if isinstance(value, bool | str) else short(value),
     "deciding": lambda keys: keys and deciding_in_words(keys.split()),
-    "figure": lambda row, name, shown: figure_cell(shown, None if _fell(row, name) else row[name]),
+    # how far a container fell says nothing
+    "figure": lambda row, name, shown: figure_cell(
+        shown, None if name == TURNED and row["outcome"] == Outcome.OVERTURNED else row[name]
+    ),
     "figure_head": figure_head,
     "input_in_words": input_in_words,
     "interval": lambda point: f"{share(point['low'])} to {share(point['high'])} %",

@@ -11,8 +11,11 @@ from typing import Any
 
 from fem.results.figures import WHERE_GIVEN, BoxFigures, Figures, LinkFigures, Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
-from fem.results.outcome import Outcome
+from fem.results.outcome import ENDINGS, Outcome
 from fem.runtime.units import Reach
+
+#: factor below which a motion is hardly another one: by such changes "sure" was tried (`bench.py words`)
+SAME_MOTION = 1.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -298,8 +301,16 @@ class Verdict(RunFigures):
         return "<br>".join(map(escape, self.card)) or escape(repr(self))
 
     @property
+    def only_just(self) -> bool:
+        """True if it stands, and does not under a motion that is hardly another one."""
+        factor = self.margin.governing.factor if self.margin and self.margin.governing else None
+        return self.outcome not in ENDINGS and factor is not None and factor < SAME_MOTION
+
+    @property
     def sure_in_words(self) -> str:
         """How sure the outcome is, as people read it; empty where nothing was tried."""
+        if self.only_just and self.sure in ("sure", "regime unsure"):
+            return "stands only just"
         if self.sure != "regime unsure":
             return self.sure or ""
         return f"sure that it {'overturns' if self.outcome == Outcome.OVERTURNED else 'stands'}, not how it moves"

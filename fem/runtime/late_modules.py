@@ -4,7 +4,6 @@ scipy reads every name of numpy, and so loads what a run never uses: wrappers of
 numba reads yaml, whose files nobody here writes.
 """
 
-import sys
 from collections.abc import Sequence
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import LazyLoader
@@ -24,8 +23,3 @@ class LateFinder(PathFinder):
         if spec is not None and spec.loader is not None:
             spec.loader = LazyLoader(spec.loader)
         return spec
-
-
-def load_late() -> None:
-    """From now on, load these modules at their first use."""
-    sys.meta_path.insert(0, LateFinder)

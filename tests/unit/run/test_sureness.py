@@ -1,11 +1,13 @@
 """How sure a verdict is, which inputs decide, a range across zero, and the static rule or the run."""
 
+from dataclasses import replace
+
 import pytest
 from cases import named_case
 
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
-from fem.results.run_result import ChangedRun, RunResult, Verdict
+from fem.results.run_result import ChangedRun, Governing, Margin, RunResult, Verdict
 from fem.run.card import line, times, warnings_for
 from fem.run.sureness import judged
 
@@ -67,6 +69,32 @@ def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, dec
     judgement = verdict(*found)
     assert (judgement.sure, judgement.decided_by) == (sure, decided_by)
     assert judgement.band.unsure is (sure == "unsure")
+
+
+@pytest.mark.parametrize(
+    ("factor", "of", "said"),
+    [
+        (
+            1.004,
+            "variations",
+            "stands only just: it stands in all 2 variations of its inputs, but not in all of them",
+        ),
+        (
+            1.049,
+            "case",
+            "stands only just: it stands in all 2 variations of its inputs, but not under a motion 5 %",
+        ),
+        (1.05, "case", "sure: it stands in all 2 variations"),
+        (None, "case", "sure: it stands in all 2 variations"),
+    ],
+)
+def test_what_falls_under_a_motion_that_is_hardly_another_one_is_not_called_sure(factor, of, said):
+    governing = Governing(factor=factor, of=of, variations=2, variations_overturned=0, variations_destroyed=0)
+    judgement = verdict((HALF, {}), (STIFF, {}))
+    margin = Margin(least_tried=1.0, largest_tried=4.0, runs=9, governing=governing)
+    judgement = replace(judgement, margin=margin)
+    assert line(RunResult(status="completed", verdict=judgement), "sureness").startswith(said)
+    assert (judgement.sure_in_words == "sure") is said.startswith("sure")
 
 
 @pytest.mark.parametrize(
