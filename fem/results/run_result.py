@@ -188,7 +188,10 @@ class Governing(JsonBlock):
     variations: int = 0  #: with all unknown inputs drawn at once, up to the end of the case itself
     variations_overturned: int = 0
     variations_destroyed: int = 0
+    variations_failed: int | None = None  #: without an outcome, not counted; left out where there is none
     step: float | None = None  #: widest relative step below it: an island narrower than that may be missed
+
+    written_where_given = frozenset({"variations_failed"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -273,6 +276,7 @@ class Verdict(RunFigures):
     first_line: str | None = None  #: the first line of the card
     #: what it does, the margin that governs, how far it moves, how sure that is, the static rule: a line each
     card: tuple[str, ...] = ()
+    still_turned: float | None = None  #: |rotation| over the angle, of one that rocks as its run ends
     place_m: float | None = None  #: slip beyond which it has left its place
     place_is: str | None = None  #: whose that is: limit | width | gap
     #: sure | regime unsure: it stands, or falls, in all variations, but may move otherwise | unsure; None: not tried
@@ -287,7 +291,15 @@ class Verdict(RunFigures):
     written_where_given = WHERE_GIVEN.union(
         {
             *("corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"),
-            *("invalid_reason", "leans", "neighbours", "stress_from_corner_m", "place_m", "place_is"),
+            *(
+                "invalid_reason",
+                "leans",
+                "neighbours",
+                "stress_from_corner_m",
+                "place_m",
+                "place_is",
+                "still_turned",
+            ),
         }
     )
 
@@ -309,8 +321,8 @@ class Verdict(RunFigures):
     @property
     def sure_in_words(self) -> str:
         """How sure the outcome is, as people read it; empty where nothing was tried."""
-        if self.only_just and self.sure in ("sure", "regime unsure"):
-            return "stands only just"
+        if self.sure in ("sure", "regime unsure") and (self.only_just or self.still_turned):
+            return "stands until its run ends" if self.still_turned else "stands only just"
         if self.sure != "regime unsure":
             return self.sure or ""
         return f"sure that it {'overturns' if self.outcome == Outcome.OVERTURNED else 'stands'}, not how it moves"

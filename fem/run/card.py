@@ -112,6 +112,8 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     verdict, static = result.verdict or Verdict(), result.static or StaticResult()
     motion, angle, tilt = result.motion or MotionResult(), static.slenderness_angle_rad, verdict.tilt_rad
     leans = angle and tilt is not None and abs(tilt) >= LEANING * angle and not verdict.restored
+    slips = (*(reach_of(verdict, SLIPPED) or ()), verdict.slipped)
+    least_slip, most_slip = min(slips), max(slips)
     shown = {
         "SEEN": SEEN,
         "STAYS": STAYS,
@@ -119,11 +121,14 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "rule_says": rule_says,
         "deciding_in_words": deciding_in_words,
         "verdict": verdict,
+        "infinite": math.inf,
+        "may_leave": verdict.place_m is not None and least_slip <= verdict.place_m < most_slip,
+        "steps": lambda step: PERCENT.text(step, figures=1),
         "static": static,
         "motion": motion,
         "in_row": fall_in_row(verdict),
         "others": _others(verdict) if result.status in RUN.finished else None,
-        "most": max((*(reach_of(verdict, SLIPPED) or ()), verdict.slipped)),
+        "most": most_slip,
         "slip": of_band(verdict, SLIPPED),
         "slip_at_end": of_band(verdict, "residual_slip_m"),
         "left_leaning": abs(tilt) if leans and tilt is not None else 0.0,
@@ -259,6 +264,7 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
         own=static.ruling,
         numerics=numerics,
         sureness=line(result, "sureness"),
+        times=times,
         by_weakening=_changed_alone(verdict, WEAKENING),
         by_dashpot=own_dashpot | varied,
         scatter=_scatter(verdict, width),

@@ -32,6 +32,7 @@ ROUNDING = 1e-9  #: share of a peak
 LEAST = 0.1  #: of a number in a unit, before a smaller unit is taken
 NAMES = {"table": "record", "pulse": "pulse"}
 AS_ONE = "the boxes moved as one"
+FEW_PERIODS = 5.0  #: of a harmonic motion, in which what rocks under it has not built up
 
 
 def motion_in_words(motion: MotionResult) -> str:
@@ -63,6 +64,12 @@ def part_covered(motion: MotionResult) -> str:
     upward = motion.vertical
     known = [one for one in (motion, upward) if one is not None and one.covered is not None]
     cut = min(known, key=lambda one: one.covered or 0.0, default=motion)
+    if motion.kind == "harmonic" and motion.duration_s and motion.peak_velocity_m_s:
+        periods = (
+            motion.duration_s * (motion.peak_acceleration_m_s2 or 0.0) / motion.peak_velocity_m_s / math.tau
+        )
+        if periods < FEW_PERIODS:
+            return f"{motion.duration_s:.3g} s, {periods:.2g} periods of this motion"
     if cut.covered is None or cut.duration_s is None or cut.covered >= 1.0 - 1e-9:
         return ""
     part = f"{cut.covered * cut.duration_s:.4g} of {cut.duration_s:.4g} s"
@@ -184,8 +191,8 @@ def _slides(run: Verdict | ChangedRun, least: float) -> bool:
 
 
 def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
-    """How the boxes of a loose stack moved on one another: the largest slip and opening; empty of one body."""
-    boxes = verdict.boxes or ()
+    """How the boxes of a loose stack moved on one another: the largest slip and opening, with ranges; empty of one."""
+    boxes, ranges = verdict.boxes or (), box_reaches(verdict)
     if len(boxes) < 2:
         return ""
     slip_limit, opening_limit = limits(static or StaticResult())
@@ -194,9 +201,14 @@ def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
         ("slid", "on", "max_slip_m", slip_limit, JOINT_MILLIMETRES),
         ("opened", "from", "max_opening_m", opening_limit, SHORT_MILLIMETRES),
     ):
-        most = most_moved(boxes, key, above=1)
-        if boxes[most][key] > limit:
-            moved.append(f"box {most + 1} {verb} {unit.text(boxes[most][key])} {preposition} box {most}")
+        reaches = [
+            (box[key], *(reach[key] if reach else ())) for box, reach in zip(boxes, ranges, strict=True)
+        ]
+        most = max(range(1, len(boxes)), key=lambda k: max(reaches[k]))
+        if max(reaches[most]) > limit:
+            own, *reach = reaches[most]
+            size = unit.text(own, (reach[0], reach[1]) if reach else None)
+            moved.append(f"box {most + 1} {verb} {size} {preposition} box {most}")
     return ", ".join(moved) or AS_ONE
 
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import cache
 from itertools import groupby, pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fem.case.case import Case, CaseError
 from fem.case.strength import scaled_motion
@@ -188,8 +188,10 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
 
 def _governing(own: Search, draws: Sequence[Search], in_band: Ending | None) -> Governing:
     """The least factor of all that were tried at which a container does not stand, and what it rests on."""
-    counts = {
-        "variations": len(draws),
+    failed = sum(draw.first(*NOT_STANDING) is None and bool(draw.of(Ending.FAILED)) for draw in draws)
+    counts: dict[str, Any] = {
+        "variations": len(draws) - failed,
+        "variations_failed": failed or None,
         "variations_overturned": sum(draw.first(Ending.OVERTURNED) is not None for draw in draws),
         "variations_destroyed": sum(draw.first(Ending.INVALID) is not None for draw in draws),
     }

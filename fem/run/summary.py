@@ -79,14 +79,14 @@ def _brief(result: run_result.RunResult) -> Iterator[RenderableType]:
     # what was read is no detail
     yield from _warnings((*motion.notes, *(motion.vertical.notes if motion.vertical else ())))
     if result.static is not None:
-        yield _static_table(replace(result.static, code=None, code_q1=None), to_compare(result))
+        yield _static_table(result, replace(result.static, code=None, code_q1=None))
 
 
 def _whole(result: run_result.RunResult) -> Iterator[RenderableType]:
     verdict = result.verdict or run_result.Verdict()
     yield from _table_of_rows(result, "results")
     if result.static is not None:
-        yield _static_table(result.static, to_compare(result))
+        yield _static_table(result, result.static)
         yield from (Text(f"{sentence}\n") for sentence in governing(result))
         if note := code_note(result.static):
             yield Text(f"{note}\n")
@@ -115,30 +115,26 @@ def to_compare(result: run_result.RunResult) -> run_result.Verdict:
     return (result.status in RUN.finished and result.verdict) or run_result.Verdict()
 
 
-def _static_table(static: run_result.StaticResult, verdict: run_result.Verdict) -> Table:
+def _static_table(result: run_result.RunResult, static: run_result.StaticResult) -> Table:
     """Sliding and overturning under each action, one below the other."""
     return _table_by(
         "summary.txt.j2",
         "static_rules",
         static=static,
-        own_motion=own_motion_name(static),
+        own_motion=own_motion_name(static, result.motion),
         # `run.json` has none of a demand without any capacity: it is infinite
         use=lambda utilisation, demand: math.inf if utilisation is None and demand else utilisation,
         seen=visible_number,
         rule_says=rule_says,
-        found=partial(run_found, verdict),
+        found=partial(run_found, to_compare(result)),
     )
 
 
-def own_motion_name(static: run_result.StaticResult) -> str:
-    """The run's own peak floor acceleration, from the uplift acceleration and its utilisation; and the slope."""
-    use = static.own_motion.utilisation_overturning if static.own_motion is not None else None
-    uplift = static.uplift_acceleration_m_s2
-    if use is None or uplift is None:
-        return "own peak"
-    downhill = static.downhill_m_s2 or 0.0
-    slope = f" and {downhill:.3g} m/s2 downhill" if downhill else ""
-    return f"own peak, {use * (uplift + downhill) - downhill:.3g} m/s2{slope}"
+def own_motion_name(static: run_result.StaticResult, motion: run_result.MotionResult | None) -> str:
+    """The peak floor acceleration of the run along its floor, and the slope."""
+    peak = motion and (motion.peak_in_run_m_s2 or motion.peak_acceleration_m_s2)
+    slope = f" and {static.downhill_m_s2:.3g} m/s2 downhill" if static.downhill_m_s2 else ""
+    return "own peak" if not peak else f"own peak, {peak:.3g} m/s2{slope}"
 
 
 def run_found(verdict: run_result.Verdict, check: str) -> str:

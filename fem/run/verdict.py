@@ -41,6 +41,9 @@ from fem.runtime.units import SECONDS
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05  #: of a first impact, above which other energy entered
+#: share of the slenderness angle from which one that rocks as its run ends is said to, by the kind of its motion: a
+#: harmonic one goes on as it was, and without any it comes to rest; 0.1 under all others
+SWINGING = {"harmonic": 0.5, "none": math.inf}
 STILL = 1e-4  #: change of the rotation over the slenderness angle below which a container does not turn
 
 
@@ -134,6 +137,7 @@ def verdict_from(
     turned = run.old.boxes[:, ROTATION] if boxes else run.old.pose[ROTATION]
     at_rest = _finite(float(run.clock[0].rest_since))
     turns = track.left_open + track.right_open > 0 and at_rest is None  # about one side
+    swing = float(np.abs(turned).max()) / angle if turns and not fell else 0.0
     neighbours = _neighbour_results(model)
     followed = end is not None and end > 0.0 and not case.output.stop_when_still
     lost_at_impact = 0.0 < track.restitution < MOST_RESTITUTION and not model.container.row
@@ -151,6 +155,7 @@ def verdict_from(
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
         tilt_rad=None if fell or turns else lowest,
+        still_turned=swing if swing >= SWINGING.get(case.motion.kind, 0.1) else None,
         restored=outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
         and float(np.abs(turned).max()) < ROCKING * angle,
         at_rest_s=at_rest,

@@ -106,6 +106,8 @@ def plastic_corner(verdict: Verdict) -> str:
     if capacity is None or force is None or work is None:
         return ""
     yields = f"the steel above a corner yields at {KILONEWTONS.text(capacity, figures=3)}"
+    if work == 0.0 and max(reach_of(verdict, "max_corner_force_N") or (0.0,)) > capacity:
+        return f"{yields}, less than the largest corner force of a variation: there it would yield as a whole"
     if work == 0.0:
         return f"{yields}, more than the largest corner force, so a rigid-plastic corner would take no work"
     return f"{yields}, less than the largest corner force: as a whole it would yield"

@@ -23,6 +23,7 @@ class DisplayUnit:
     figures: int = MANY  #: significant figures, without trailing zeros where they are four
     under: str = "<"  #: the word before that limit
     whole: bool = False  #: it counts
+    full: bool = False  #: no digit before the point is rounded off
     #: the unit a thousand times as large, for sizes from there on; tables of one unit keep this one
     long: str = ""
 
@@ -70,6 +71,8 @@ class DisplayUnit:
 
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
+        if self.full:
+            figures = max(figures, len(f"{abs(self.factor * value):.0f}"))
         return (
             f"{value:.0f}" if self.whole else in_figures(value, figures, self.factor, self.least, self.under)
         )
@@ -123,7 +126,7 @@ JOINT_MILLIMETRES = replace(SHORT_MILLIMETRES, least=1e-3, under="under")
 DEGREES = DisplayUnit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
 #: of a rotation to the slenderness angle; a tenth of what counts as rocking
 RATIO = DisplayUnit(least=1e-3, figures=3)
-PERCENT = DisplayUnit(name="%", factor=100.0, least=1e-3, figures=FEW)
+PERCENT = DisplayUnit(name="%", factor=100.0, least=1e-3, figures=FEW, full=True)
 KILONEWTONS = DisplayUnit(name="kN", factor=1e-3, least=10.0)
 VELOCITY, ACCELERATION = DisplayUnit(name="m/s", least=1e-5), DisplayUnit(name="m/s2")
 MEGAPASCALS = DisplayUnit(name="MPa", factor=1e-6)

@@ -52,7 +52,7 @@ def test_a_page_is_green_and_signed_where_somebody_stands_for_every_input(folder
         doubted = replace(result, inputs=replace(result.inputs, unstated=unstated))
         page = site_report(folder, doubted, brief=True)
         assert ('class="sign"' in page, 'class="answer stood"' in page) == (not unstated, not unstated)
-        assert ("nobody stands for source of friction" in words_of(page)) is bool(unstated)
+        assert ("nobody vouches for source of friction" in words_of(page)) is bool(unstated)
 
 
 @pytest.mark.parametrize("text", [None, "{", '{"status": "completed"}'])
