@@ -1,6 +1,7 @@
 """The house stays as it was drawn: imports go one way, and each third-party package has its doors."""
 
 import ast
+import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from functools import cache
@@ -111,6 +112,14 @@ WRITING_OF_OS = {"replace", "remove", "rename", "truncate", "copy", "move", "lin
 
 #: what `verify`, `validate` and `study` compute, from the ground up: a folder of the tests imports those above it here
 EVIDENCE = (("rigs",), ("evidence",), ("verification",), ("validation", "paper"))
+
+#: folders of the tests that pin the physics, and their files of which no fault of `faults.toml` is asked
+OF_PHYSICS = ("paper", "validation", "verification", "unit/contact", "unit/mesh", "unit/model")
+OF_PHYSICS += ("unit/solid", "unit/seismic", "unit/response")
+NO_FAULT = {
+    "unit/contact/test_compilation.py",  # the contract of the compiler
+    "verification/invariance/test_run_determinism.py",  # the same bits again, of whatever physics
+}
 
 #: room -> its folders, most lines of Python, most public names; what needs more in a room takes as much out of it
 BUDGET = {
@@ -255,6 +264,14 @@ def test_evidence_goes_one_way_and_the_program_imports_nothing_of_it():
             wrong += [(name_of(f), above) for f in files if (above := folders_of_tests(f) - below - {folder})]
         below |= set(floor)
     assert not wrong
+
+
+def test_every_test_file_of_the_physics_notices_a_fault():
+    faults = tomllib.loads((ROOT / "tests/mutations/faults.toml").read_text(encoding="utf-8"))["fault"]
+    noticing = {name for fault in faults for name in fault["tests"]}
+    files = [name_of(file) for folder in OF_PHYSICS for file in in_folder(f"tests/{folder}")]
+    tests = {file.removeprefix("tests/") for file in files if "/test_" in file}
+    assert tests - noticing == NO_FAULT
 
 
 @pytest.mark.parametrize("room", BUDGET)
