@@ -53,12 +53,6 @@ class InputChange:
         )
 
 
-def largest_first(changes: Sequence[InputChange]) -> list[InputChange]:
-    """The last change of the same inputs, which is the end of their range, before all others."""
-    largest = list({change.inputs: change for change in changes}.values())
-    return largest + [change for change in changes if change not in largest]
-
-
 def all_changes(
     case: Case, penalty: float | None, draws: int | None = None
 ) -> tuple[tuple[InputChange, ...], tuple[InputChange, ...], tuple[InputChange, ...]]:

@@ -15,7 +15,7 @@ from typing import Any
 
 from fem.case.case import Case
 from fem.case.tables.input_ranges import SUPPORT, TOLERANCE, Value
-from fem.case.uncertainty import InputChange, all_changes, as_changed, largest_first, stiff_floor
+from fem.case.uncertainty import InputChange, all_changes, as_changed, stiff_floor
 from fem.model.container import Container, adapted_container, discretise
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
@@ -312,7 +312,10 @@ def plan_of(model: Model, result: RunResult) -> tuple[list[InputChange], list[In
     soft = case.support.kind != "corners" and low <= use <= high
     floors = [stiff_floor(case, penalty)] if soft else []
     singles, pairs, draws = all_changes(case, penalty)
-    ordered = [*floors, *largest_first(singles), *pairs, *draws]
+    ends = list(
+        {change.inputs: change for change in singles}.values()
+    )  # of their ranges, the last of the same inputs
+    ordered = [*floors, *ends, *(change for change in singles if change not in ends), *pairs, *draws]
     cost = cost_of(result.numerics or Numerics())
     most = LEAST_MEMBERS if case.solver.model == "full" else max(LEAST_MEMBERS, int(BUDGET_S / cost))
     return ordered[:most], ordered[most:]

@@ -38,7 +38,15 @@ from fem.run.described import (
     rule_says,
     sides_in_words,
 )
-from fem.run.sureness import below_uplift, ending, numerical, rests_on_stiff_floor, stands, static_use
+from fem.run.sureness import (
+    below_uplift,
+    ending,
+    fallen_in_band,
+    numerical,
+    rests_on_stiff_floor,
+    stands,
+    static_use,
+)
 from fem.run.words import largest_rotation, of_band, paragraphs, plastic_corner, reach_of, sentence
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import PERCENT, in_figures
@@ -127,7 +135,8 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "static": static,
         "motion": motion,
         "in_row": fall_in_row(verdict),
-        "others": _others(verdict) if result.status in RUN.finished else None,
+        "others": fallen_in_band(verdict) if result.status in RUN.finished else None,
+        "verbs": {Ending.OVERTURNED: "overturn", Ending.INVALID: "destroy"},
         "most": most_slip,
         "slip": of_band(verdict, SLIPPED),
         "slip_at_end": of_band(verdict, "residual_slip_m"),
@@ -142,16 +151,6 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "sides": sides_in_words(result.sides),
     }
     return [sentence("card.txt.j2", name, **shown) for name in names]
-
-
-def _others(verdict: Verdict) -> tuple[str, int, int] | None:
-    """What variations do under this very motion that do not stand, how many, of how many; None where all stand."""
-    members = (verdict.band or Band()).members[1:]
-    tried = [ending(run) for run in members if run.outcome is not None and not numerical(run)]
-    for kind, verb in ((Ending.OVERTURNED, "overturn"), (Ending.INVALID, "destroy")):
-        if kind in tried:
-            return verb, tried.count(kind), len(tried)
-    return None
 
 
 def _variations(band: Band) -> dict[str, Any]:

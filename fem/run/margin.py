@@ -29,7 +29,7 @@ from fem.results.run_result import Governing, Margin, Numerics, RunResult, Verdi
 from fem.run.band import cost_of, key_of, tolerance_of_draws, worker_threads, workers_for
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
-from fem.run.sureness import ending, numerical
+from fem.run.sureness import fallen_in_band
 from fem.run.verdict import outcome_of
 
 LARGEST, LEAST = 4.0, 0.05  #: factors
@@ -128,7 +128,8 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     itself = Tried(ending_of(result.status, verdict.outcome), verdict.turned)
     own, least = Search(_trial(model, {}, stop), {1.0: itself}), _least(model)
     most, draws = _largest(model.case), []
-    in_band = None if itself.ending == Ending.OVERTURNED else _in_band(verdict)
+    fallen = None if itself.ending == Ending.OVERTURNED else fallen_in_band(verdict)
+    in_band = fallen and fallen[0]
     try:
         with worker_threads(workers := workers_for(model, SCANNED)) as pool:
             _scan(own, least, most, pool, workers)
@@ -221,13 +222,6 @@ def _worst_draws(model: Model, verdict: Verdict, count: int) -> list[tuple[Mappi
     draws = [change.values for change in all_changes(model.case, model.penalty)[2]]
     known = sorted(((turned.get(key_of(values), 0.0), -k) for k, values in enumerate(draws)), reverse=True)
     return [(draws[-k], ratio) for ratio, k in known[:count]]
-
-
-def _in_band(verdict: Verdict) -> Ending | None:
-    """How a member of the band ends that does not stand under the motion of the run, by another input."""
-    members = verdict.band.members[1:] if verdict.band else ()
-    ends = {ending(member) for member in members if member.outcome is not None and not numerical(member)}
-    return next((end for end in NOT_STANDING if end in ends), None)
 
 
 def _bare(

@@ -61,7 +61,12 @@ def brief_summary(result: run_result.RunResult, *, folder: Path) -> str:
     count = len(result.warnings or ())
     noted = f", with {count} warning{'s' * (count > 1)}" if count else ""
     rest = (f"Whole summary{noted}: {folder / 'summary.txt'}", *_files(folder))
-    return "\n".join([*_lines(result, folder, _brief(result)), *rest]) + "\n"
+    motion = result.motion or run_result.MotionResult()
+    read = (*motion.notes, *(motion.vertical.notes if motion.vertical else ()))  # is no detail
+    shown: list[RenderableType] = [*_table_of_rows(result, "brief_results", BRIEF), *_warnings(read)]
+    if result.static is not None:
+        shown.append(_static_table(result, replace(result.static, code=None, code_q1=None)))
+    return "\n".join([*_lines(result, folder, shown), *rest]) + "\n"
 
 
 def _lines(result: run_result.RunResult, folder: Path, parts: Iterable[RenderableType]) -> list[str]:
@@ -71,15 +76,6 @@ def _lines(result: run_result.RunResult, folder: Path, parts: Iterable[Renderabl
     with console.capture() as capture:
         console.print(title, Text("\n".join(card_of(result)) + "\n"), *parts, sep="\n")
     return [line.rstrip() for line in shown(capture.get()).splitlines()]
-
-
-def _brief(result: run_result.RunResult) -> Iterator[RenderableType]:
-    motion = result.motion or run_result.MotionResult()
-    yield from _table_of_rows(result, "brief_results", BRIEF)
-    # what was read is no detail
-    yield from _warnings((*motion.notes, *(motion.vertical.notes if motion.vertical else ())))
-    if result.static is not None:
-        yield _static_table(result, replace(result.static, code=None, code_q1=None))
 
 
 def _whole(result: run_result.RunResult) -> Iterator[RenderableType]:

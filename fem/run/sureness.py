@@ -21,7 +21,7 @@ from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.tables.unknown_inputs import INPUTS
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BOX_FIGURES, FELL_FIRST, Place, RunFigures, keys_of
-from fem.results.outcome import ENDINGS, ROCKING, Ending, Outcome
+from fem.results.outcome import ENDINGS, NOT_STANDING, ROCKING, Ending, Outcome
 from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
@@ -120,6 +120,13 @@ def static_use(result: RunResult) -> float | None:
 def ending(run: RunFigures) -> Ending:
     """What a run that did not fail counts as."""
     return ENDINGS.get(run.outcome or "", Ending.STANDING)
+
+
+def fallen_in_band(verdict: Verdict) -> tuple[Ending, int, int] | None:
+    """How variations end that do not stand under the motion of the run, how many, of how many; None where all stand."""
+    members = verdict.band.members[1:] if verdict.band is not None else ()
+    tried = [ending(run) for run in members if run.outcome is not None and not numerical(run)]
+    return next(((kind, tried.count(kind), len(tried)) for kind in NOT_STANDING if kind in tried), None)
 
 
 def stands(run: RunFigures) -> bool:

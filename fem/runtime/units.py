@@ -72,7 +72,7 @@ class DisplayUnit:
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
         if self.full:
-            figures = max(figures, len(f"{abs(self.factor * value):.0f}"))
+            figures = max(figures, len(str(int(abs(self.factor * value)))))
         return (
             f"{value:.0f}" if self.whole else in_figures(value, figures, self.factor, self.least, self.under)
         )

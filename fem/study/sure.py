@@ -204,7 +204,7 @@ class Copies:
         return how_sure(levels), tuple(deciding_inputs(levels, alone))
 
     def band(self) -> tuple[dict[str, Any], Iterator[tuple[Any, ...]]]:
-        """What the copies say: a part of `sweep.json`, and for each cell the values of `band_columns`.
+        """What the copies say: a part of `sweep.json`, and for each cell the values of the columns of the band.
 
         The share that overturns is of a cell and all its copies: one that was not tried, because it turned no cell
         around this one, counts as the cell, and so does one that failed; draws count where some were tried.

@@ -30,7 +30,7 @@ from fem.study.maps import draw_maps
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import NamedStages, Runner
 from fem.study.sure import BETWEEN, COPIES, Copies, RunShown, change_columns, left_out, refine, shown_in
-from fem.study.sweep_table import FOUND, TRIED, SweepResult, band_columns, open_sweep
+from fem.study.sweep_table import BAND, FOUND, TRIED, WIDTH, SweepResult, open_sweep
 from fem.study.table import Columns, fields_of, line_of, read_lines, row_of, table_of_lines, table_of_rows
 
 ROWS, TABLE, MEMBERS = "rows.csv", "table.csv", "members.csv"
@@ -156,7 +156,7 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     told, path = partial(stages.begin, CELLS), place.path / ROWS
     log = sweep.runs(what=CELLS, path=path, told=told, columns=columns, key=key, ids=1, note=note)
     place.write_result(begun.to_json())  # with the hash of the band: copies of another are gone
-    with_band = (*columns, *band_columns(sweep.axes))
+    with_band = (*columns, *BAND, *(WIDTH + axis.key for axis in sweep.axes if axis.is_numeric))
     table = place.path / TABLE
     if table.exists() and not log.path.exists():  # of a finished sweep, whose band is to be another
         kept = (line_of(fields_of(line)[: len(columns)]) for line in read_lines(table, with_band))

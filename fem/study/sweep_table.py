@@ -1,7 +1,6 @@
 """The result of a sweep as typed data: what `sweep.json` holds; its rows are in tables."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -61,11 +60,6 @@ BAND: Columns = {
 }
 WIDTH = "band_width."  #: before the key of an axis
 WORDS = frozenset(name for name, kind in (FOUND | BAND).items() if kind in (str, tuple))
-
-
-def band_columns(axes: Sequence[Axis]) -> tuple[str, ...]:
-    """Columns that the band adds."""
-    return (*BAND, *(WIDTH + axis.key for axis in axes if axis.is_numeric))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

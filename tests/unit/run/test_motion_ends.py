@@ -17,7 +17,9 @@ from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
+from fem.run.compute import compute
 from fem.run.described import part_covered
+from fem.run.summary import own_motion_name
 from fem.study.runner import run_model
 
 FREE = {"solver.model": "rigid", "solver.duration_s": "auto", "contact.mu_kinetic": 0.4}
@@ -148,3 +150,38 @@ def test_peaks_of_a_pulse_are_its_integrals(shape):
     assert part.covered == pytest.approx(0.35 / 0.8)
     assert part.peak_velocity_m_s == pytest.approx(v, rel=1e-4)
     assert part.peak_displacement_m == pytest.approx(x, rel=1e-4)
+
+
+def test_a_run_that_ends_in_mid_swing_says_so_and_is_not_sure():
+    """Half-sine of 7 m/s2 on a box of 0.6 m by 2 m: turned by 70 % of the angle after 0.6 s, it falls after 2 s."""
+    box = {"container.width_m": 0.6, "container.height_m": 2.0, "contact.mu_static": 0.6} | FREE
+    shaken = {"motion.kind": "pulse", "motion.shape": "half-sine", "motion.pulse_s": 0.4}
+    shaken |= {"motion.peak_acceleration_m_s2": 7.0, "contact.mu_kinetic": 0.6, "container.mass_kg": 400.0}
+    case = named_case("least", box | shaken)
+    whole, cut = (
+        compute(case.with_values({"solver.duration_s": until}), band=True, margin=False)
+        for until in ("auto", 0.6)
+    )
+    assert (whole.verdict.outcome, cut.verdict.outcome) == ("overturned", "rock")
+    at_end = abs(cut.history["rotation_rad"][-1]) / cut.slenderness_angle
+    assert cut.verdict.still_turned == pytest.approx(at_end, rel=1e-3) and at_end > 0.5
+    assert "still rocks at the end" in cut.verdict.first_line
+    assert cut.verdict.sure_in_words == "stands until its run ends"
+    assert any(warning.startswith("the run ends while") for warning in cut.typed_result.warnings)
+    assert whole.verdict.still_turned is None
+
+
+@pytest.mark.parametrize(("duration", "said"), [(0.3, "0.3 s, 0.33 periods of this motion"), (6.0, "")])
+def test_a_harmonic_motion_of_few_periods_is_no_motion_without_end(duration, said):
+    case = load_case("seed_stack_plateau", [f"solver.duration_s={duration}", "solver.model=rigid"])
+    assert part_covered(motion_result(case, *build_motions(case))) == said
+
+
+def test_the_static_rule_on_a_slope_is_headed_by_the_peak_along_the_floor():
+    """A horizontal peak of 2 m/s2 on 25 per cent has 2 cos(atan 0.25) = 1.940 m/s2 along the floor."""
+    slope = {"floor.slope_percent": 25.0, "motion.peak_acceleration_m_s2": 2.0, "solver.duration_s": 2.0}
+    harmonic = {"motion.kind": "harmonic", "motion.frequency_Hz": 1.0, "contact.mu_static": 0.4}
+    run = compute(named_case("least", FREE | harmonic | slope), band=False, margin=False)
+    name = own_motion_name(run.typed_result.static, run.typed_result.motion)
+    assert name.startswith("own peak, 1.94 m/s2 and 2.38 m/s2 downhill")
+    assert np.abs(run.history["base_acceleration_m_s2"]).max() == pytest.approx(1.940, abs=1e-3)

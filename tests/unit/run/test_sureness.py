@@ -77,12 +77,12 @@ def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, dec
         (
             1.004,
             "variations",
-            "stands only just: it stands in all 2 variations of its inputs, but not in all of them",
+            "stands only just: it stands in all 2 variations of its inputs, one or two at a time, but not in all",
         ),
         (
             1.049,
             "case",
-            "stands only just: it stands in all 2 variations of its inputs, but not under a motion 5 %",
+            "stands only just: it stands in all 2 variations of its inputs, one or two at a time, but not under",
         ),
         (1.05, "case", "sure: it stands in all 2 variations"),
         (None, "case", "sure: it stands in all 2 variations"),
@@ -214,3 +214,15 @@ def test_a_step_that_decides_is_no_input():
 )
 def test_a_factor_next_to_one_is_not_said_to_be_one(factor, said):
     assert times(factor) == said
+
+
+@pytest.mark.parametrize(
+    ("bare", "said"), [(1.45, "overturns at 1.45"), (None, "stands at up to 4"), (0.7, "")]
+)
+def test_what_holds_a_container_and_makes_it_fall_earlier_is_warned_of(bare, said):
+    governing = Governing(factor=0.76, of="variations", variations=6, variations_overturned=3)
+    margin = Margin(least_tried=0.4, largest_tried=4.0, runs=9, governing=governing)
+    margin = replace(margin, factor_without_links=bare, without_links_tried_to=4.0)
+    result = RunResult(status="completed", verdict=replace(verdict((HALF, {})), margin=margin))
+    words = [one for one in warnings_for(result, named_case("least")) if one.startswith("what holds it")]
+    assert len(words) == bool(said) and all(said in one for one in words)

@@ -3,7 +3,7 @@
 import pytest
 
 from fem.html.units import number
-from fem.runtime.units import DisplayUnit, in_figures, visible_number
+from fem.runtime.units import PERCENT, DisplayUnit, in_figures, visible_number
 
 
 @pytest.mark.parametrize(
@@ -28,6 +28,11 @@ def test_a_number_has_the_figures_that_its_range_allows(value, reach, words):
 )
 def test_figures_are_rounded_without_an_exponent(value, figures, words):
     assert in_figures(value, figures) == words
+
+
+def test_a_share_beyond_a_whole_is_seen_to_be():
+    assert PERCENT.text(0.999, (0.994, 1.029)) == "100 (99 to 103) %"
+    assert PERCENT.text(0.64, (0.0014, 1.043)) == "64 (0.14 to 104) %"
 
 
 @pytest.mark.parametrize("moment", [53954.99999999999, 53955.0, 53955.00000000001])
