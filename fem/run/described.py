@@ -146,7 +146,9 @@ def sides_in_words(sides: Sides | None) -> str:
     own, other = (METRES.text(plane.width_m, figures=4) for plane in (sides.computed, sides.other))
     use = sides.other.utilisation_overturning or 0.0
     says = rule_says("overturning", use)
-    return f". This is the {own} side; the {other} side governs ({says}, {use:.3f}; --both-sides computes both)"
+    return (
+        f". This is the {own} side; the {other} side governs ({says}, {use:.3f}; --both-sides computes both)"
+    )
 
 
 def code_note(static: StaticResult) -> str:

@@ -311,6 +311,7 @@ def _value(key: str, text: str) -> Any:
     return parse_override(f"{key}={text}")[1] if text[0] == "[" else plain_text(text)
 
 
+CENTROID = "container.centroid_m"
 TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN
 CHECK_COLUMNS = {"container": int} | CHECKED | CARD
@@ -378,6 +379,13 @@ class Hall(Design):
             values = repr(sorted(row.values.items()))
             if not row.reason and values not in seen:
                 try:  # whatever a run would be refused for
+                    own, height = self.base.container, row.values.get("container.height_m")
+                    stated = "centroid_m" in self.base.given()["container"]
+                    if stated and height not in (None, own.height_m) and CENTROID not in row.values:
+                        raise CaseError(
+                            f"centroid_m = {own.centroid_m:g} of the case belongs to height_m = {own.height_m:g}; add a "
+                            "column centroid_m, or leave that key out of the case for half the height"
+                        )
                     first = self.make.case(Item(0, 0, self.keys[0], row.values))
                     if reasons := excluded_values(first):
                         raise CaseError("\n".join(reasons))

@@ -221,6 +221,17 @@ def test_under_several_motions_the_worst_governs_and_the_largest_slip_is_told(tm
         assert result.table[0]["max_slip_m"] == alone.max_slip_m
 
 
+def test_another_height_under_the_stated_mass_centre_of_the_case_is_a_bad_row(tmp_path, base, capsys):
+    stated = BASE.replace("mass_kg = 2000.0", "mass_kg = 2000.0\ncentroid_m = 1.0")
+    (tmp_path / "stated.toml").write_text(stated, encoding="utf-8")
+    rows = "name,height_m,centroid_m\nsame,3,\ntaller,4,\nown,4,1.5\n"
+    command = ["batch", str(listed(tmp_path, rows)), "--case", "stated.toml", "--out", "out", "-q"]
+    assert main([*command, "--margins", "none"]) == 0
+    reasons = {row["name"]: row["reason"] for row in rows_of(tmp_path / "out" / "hall.csv")}
+    assert "centroid_m = 1 of the case belongs to height_m = 3" in reasons["taller"]
+    assert (reasons["same"], reasons["own"]) == ("", "")
+
+
 @pytest.mark.parametrize(("first", "mark"), [("", ";"), ("", "\t"), ("sep=|\n", "|")])
 def test_results_stand_in_the_separator_and_the_decimal_mark_of_the_list(tmp_path, base, first, mark):
     rows = [("name", "width_m", "note"), ("=A;1", "0,9", "-0,5"), ("B", "0,6", "+1 x")]
