@@ -383,8 +383,8 @@ class Hall(Design):
                     stated = "centroid_m" in self.base.given()["container"]
                     if stated and height not in (None, own.height_m) and CENTROID not in row.values:
                         raise CaseError(
-                            f"centroid_m = {own.centroid_m:g} of the case belongs to height_m = {own.height_m:g}; add a "
-                            "column centroid_m, or leave that key out of the case for half the height"
+                            f"centroid_m = {own.centroid_m:g} of the case belongs to height_m = {own.height_m:g}; add "
+                            "a column centroid_m, or leave that key out of the case for half the height"
                         )
                     first = self.make.case(Item(0, 0, self.keys[0], row.values))
                     if reasons := excluded_values(first):
