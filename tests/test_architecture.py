@@ -138,7 +138,7 @@ BUDGET = {
     "site": ("fem/site", 4_372, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_785, 42),
     "product": ("mesh contact fem", 51_868, 1_522),
-    "tests": ("tests", 36_092, 2_129),
+    "tests": ("tests", 36_100, 2_130),
 }
 
 

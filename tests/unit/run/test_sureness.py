@@ -226,3 +226,11 @@ def test_what_holds_a_container_and_makes_it_fall_earlier_is_warned_of(bare, sai
     result = RunResult(status="completed", verdict=replace(verdict((HALF, {})), margin=margin))
     words = [one for one in warnings_for(result, named_case("least")) if one.startswith("what holds it")]
     assert len(words) == bool(said) and all(said in one for one in words)
+
+
+def test_a_liquid_fill_is_warned_of_wherever_the_container_stands():
+    told = [
+        any("sloshing" in words for words in warnings_for(RunResult(status="completed"), case))
+        for case in (named_case("rocking"), named_case("rocking", {"container.fill": "liquid"}))
+    ]
+    assert told == [False, True]
