@@ -132,13 +132,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_140, 60),
     "solid": ("fem/solid", 1_669, 60),
     "model": ("fem/model", 3_810, 115),
-    "run": ("fem/run", 4_439, 143),
+    "run": ("fem/run", 4_450, 143),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_857, 127),
     "study": ("fem/study fem/response", 6_998, 197),
     "site": ("fem/site", 4_372, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_785, 42),
-    "product": ("mesh contact fem", 51_868, 1_522),
-    "tests": ("tests", 36_100, 2_130),
+    "product": ("mesh contact fem", 51_879, 1_522),
+    "tests": ("tests", 36_110, 2_131),
 }
 
 

@@ -37,6 +37,7 @@ from fem.run.described import (
     part_covered,
     rule_says,
     sides_in_words,
+    used,
 )
 from fem.run.sureness import (
     below_uplift,
@@ -129,7 +130,7 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "rule_says": rule_says,
         "deciding_in_words": deciding_in_words,
         "verdict": verdict,
-        "infinite": math.inf,
+        "used": used,
         "may_leave": verdict.place_m is not None and least_slip <= verdict.place_m < most_slip,
         "steps": lambda step: PERCENT.text(step, figures=1),
         "static": static,
@@ -267,7 +268,7 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
         by_weakening=_changed_alone(verdict, WEAKENING),
         by_dashpot=own_dashpot | varied,
         scatter=_scatter(verdict, width),
-        doubts=doubts(result.motion or MotionResult(), case.gravity_m_s2),
+        doubts=doubts(result.motion or MotionResult(), case),
         ends_at_rest=ends_at_rest(case),
         longest_time=longest_time(case),
         gained=-(energy.numerical_J or 0.0) / reference,

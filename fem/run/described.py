@@ -8,7 +8,7 @@ from fem.case.case import Case
 from fem.case.tables.input_ranges import MU_KINETIC, STRIBECK, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.records.units import STANDARD_GRAVITY
-from fem.results.figures import BOX_FIGURES, BoxResult
+from fem.results.figures import BOX_FIGURES
 from fem.results.outcome import ROCKING, SLIDING, Outcome, least_slide
 from fem.results.run_result import (
     BoxReach,
@@ -24,7 +24,7 @@ from fem.results.run_result import (
 )
 from fem.run.sureness import below_uplift, rests_on_stiff_floor
 from fem.run.words import paragraphs, rows, sentence
-from fem.runtime.units import JOINT_MILLIMETRES, MANY, METRES, SHORT_MILLIMETRES, in_figures
+from fem.runtime.units import JOINT_MILLIMETRES, MANY, METRES, SHORT_MILLIMETRES, Reach, in_figures
 from fem.seismic.wind import COMBINATION
 
 FRICTION = {MU_KINETIC, WEAKENING, STRIBECK}
@@ -46,17 +46,27 @@ def motion_in_words(motion: MotionResult) -> str:
     )
 
 
-def doubts(motion: MotionResult, gravity: float) -> tuple[str, ...]:
-    """Doubts about the floor's motions under this gravity [m/s2]: those of records, and a floor that falls with g."""
-    upward = motion.vertical
+def doubts(motion: MotionResult, case: Case) -> tuple[str, ...]:
+    """Doubts about a case: those of records, a floor that falls with g, a mass centre of a box of another height."""
+    upward, box = motion.vertical, case.container
+    changed = {override.partition("=")[0] for override in case.overrides} & {
+        "container.height_m",
+        "container.centroid_m",
+    }
+    left: tuple[str, ...] = ()
+    if changed == {"container.height_m"} and box.centroid_m != 0.5 * box.height_m:
+        left = (
+            f"height_m was set to {box.height_m:g} m, and the mass centre stays at {box.centroid_m:g} m, where the "
+            "case states it; set container.centroid_m, too, if it moves",
+        )
     if upward is None:
-        return motion.notes
-    falls = (upward.peak_in_run_m_s2 or 0.0) >= gravity
+        return (*motion.notes, *left)
+    falls = (upward.peak_in_run_m_s2 or 0.0) >= case.gravity_m_s2
     note = (
         f"the vertical acceleration of the floor reaches {upward.peak_in_run_m_s2:.4g} m/s2, gravity or more: where it "
         "is downward, the floor bears nothing and the container leaves it"
     )
-    return (*motion.notes, *upward.notes, *((note,) if falls else ()))
+    return (*motion.notes, *upward.notes, *((note,) if falls else ()), *left)
 
 
 def part_covered(motion: MotionResult) -> str:
@@ -110,6 +120,11 @@ def fall_in_row(verdict: Verdict) -> tuple[float, int, str] | None:
     beside = enumerate(verdict.neighbours or (), 1)
     fallen = ((one.overturned_at_s, number, one.side) for number, one in beside)
     return min(((at, number, side) for at, number, side in fallen if at is not None), default=None)
+
+
+def used(utilisation: float | None, demand: float | None) -> float | None:
+    """A utilisation; `run.json` has none of a demand without any capacity: it is infinite."""
+    return math.inf if utilisation is None and demand else utilisation
 
 
 def rule_says(check: str, utilisation: float | None) -> str:
@@ -194,8 +209,7 @@ def _slides(run: Verdict | ChangedRun, least: float) -> bool:
 
 def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
     """How the boxes of a loose stack moved on one another: the largest slip and opening, with ranges; empty of one."""
-    boxes, ranges = verdict.boxes or (), box_reaches(verdict)
-    if len(boxes) < 2:
+    if len(verdict.boxes or ()) < 2:
         return ""
     slip_limit, opening_limit = limits(static or StaticResult())
     moved = []
@@ -203,31 +217,28 @@ def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
         ("slid", "on", "max_slip_m", slip_limit, JOINT_MILLIMETRES),
         ("opened", "from", "max_opening_m", opening_limit, SHORT_MILLIMETRES),
     ):
-        reaches = [
-            (box[key], *(reach[key] if reach else ())) for box, reach in zip(boxes, ranges, strict=True)
-        ]
-        most = max(range(1, len(boxes)), key=lambda k: max(reaches[k]))
-        if max(reaches[most]) > limit:
-            own, *reach = reaches[most]
-            size = unit.text(own, (reach[0], reach[1]) if reach else None)
-            moved.append(f"box {most + 1} {verb} {size} {preposition} box {most}")
+        most, own, reach = _farthest(verdict, key)
+        if max((own, *(reach or ()))) > limit:
+            moved.append(f"box {most + 1} {verb} {unit.text(own, reach)} {preposition} box {most}")
     return ", ".join(moved) or AS_ONE
 
 
 def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
     """The largest slip of a box on another with its range, and which slid on which; empty of one body."""
-    boxes = verdict.boxes or ()
-    if len(boxes) < 2:
+    if len(verdict.boxes or ()) < 2:
         return "", ""
-    most = most_moved(boxes, "max_slip_m", above=1)
-    reach = box_reaches(verdict)[most]
-    slip = JOINT_MILLIMETRES.text(boxes[most].max_slip_m, reach.max_slip_m if reach else None)
-    return slip, f"box {most + 1} on box {most}"
+    most, own, reach = _farthest(verdict, "max_slip_m")
+    return JOINT_MILLIMETRES.text(own, reach), f"box {most + 1} on box {most}"
 
 
-def most_moved(boxes: Sequence[BoxResult], key: str, above: int = 0) -> int:
-    """Index of the box with the largest figure, from a given box upward."""
-    return max(range(above, len(boxes)), key=lambda k: abs(boxes[k][key] or 0.0))
+def _farthest(verdict: Verdict, key: str) -> tuple[int, float, Reach | None]:
+    """The box that moves farthest on the one below, in any variation: its index, figure and range."""
+    moved: list[tuple[float, Reach | None]] = [
+        (box[key], reach[key] if reach else None)
+        for box, reach in zip(verdict.boxes or (), box_reaches(verdict), strict=True)
+    ]
+    most = max(range(1, len(moved)), key=lambda k: max((moved[k][0], *(moved[k][1] or ()))))
+    return most, *moved[most]
 
 
 def limits(static: StaticResult) -> tuple[float, float]:

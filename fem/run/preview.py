@@ -139,7 +139,7 @@ class Preview:
             static=self.static,
             peak=self.peak,
             code_note=code_note(self.static.to_result()),
-            doubts=doubts(self.motion, self.case.gravity_m_s2),
+            doubts=doubts(self.motion, self.case),
             kicks=[
                 motion.amplitude * motion.angular_frequency * abs(math.cos(motion.phase_rad))
                 for motion in (self.case.motion, self.case.vertical)

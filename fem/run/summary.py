@@ -7,7 +7,6 @@ margin.
 """
 
 import io
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -31,10 +30,10 @@ from fem.run.described import (
     floor_rows,
     governing,
     largest_joint_slip,
-    most_moved,
     motion_in_words,
     rule_says,
     unbolted,
+    used,
 )
 from fem.run.words import bolt_forces, figure_in_words, impact_note, of_band, paragraphs, rows, sentence
 from fem.runtime.terminal import shown
@@ -118,8 +117,7 @@ def _static_table(result: run_result.RunResult, static: run_result.StaticResult)
         "static_rules",
         static=static,
         own_motion=own_motion_name(static, result.motion),
-        # `run.json` has none of a demand without any capacity: it is infinite
-        use=lambda utilisation, demand: math.inf if utilisation is None and demand else utilisation,
+        use=used,
         seen=visible_number,
         rule_says=rule_says,
         found=partial(run_found, to_compare(result)),
@@ -202,7 +200,8 @@ def _box_table(result: run_result.RunResult) -> Iterator[RenderableType]:
     indices: Sequence[int] = range(len(boxes))
     if len(boxes) > MOST_BOXES:
         fallen = {k for k, box in enumerate(boxes) if box.fell}
-        indices = sorted(fallen | {most_moved(boxes, key) for key in BOX_FIGURES})
+        most = (max(range(len(boxes)), key=lambda k: abs(boxes[k][key] or 0.0)) for key in BOX_FIGURES)
+        indices = sorted(fallen | {*most})
     heads = (f">{figure.words} {figure.unit.name}" for figure in BOX_FIGURES.values())
     table, cells = _titled_table("Boxes, from the floor up", "box", *heads, ""), box_rows(result)
     for k in indices:

@@ -42,8 +42,8 @@ from fem.runtime.units import SECONDS
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05  #: of a first impact, above which other energy entered
 #: share of the slenderness angle from which one that rocks as its run ends is said to, by the kind of its motion: a
-#: harmonic one goes on as it was, and without any it comes to rest; 0.1 under all others
-SWINGING = {"harmonic": 0.5, "none": math.inf}
+#: harmonic one goes on as it was, and without any it comes to rest
+SWINGING = {"pulse": 0.1, "table": 0.1, "harmonic": 0.5, "none": math.inf}
 STILL = 1e-4  #: change of the rotation over the slenderness angle below which a container does not turn
 
 
@@ -155,7 +155,7 @@ def verdict_from(
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         max_indentation_m=_indentation(model),
         tilt_rad=None if fell or turns else lowest,
-        still_turned=swing if swing >= SWINGING.get(case.motion.kind, 0.1) else None,
+        still_turned=swing if swing >= SWINGING[case.motion.kind] else None,
         restored=outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
         and float(np.abs(turned).max()) < ROCKING * angle,
         at_rest_s=at_rest,

@@ -185,3 +185,13 @@ def test_the_static_rule_on_a_slope_is_headed_by_the_peak_along_the_floor():
     name = own_motion_name(run.typed_result.static, run.typed_result.motion)
     assert name.startswith("own peak, 1.94 m/s2 and 2.38 m/s2 downhill")
     assert np.abs(run.history["base_acceleration_m_s2"]).max() == pytest.approx(1.940, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [(["height_m=2"], True), (["height_m=2", "centroid_m=1.2"], False), (["width_m=2"], False), ([], False)],
+)
+def test_a_mass_centre_that_stays_where_the_height_is_set_is_told_of_before_the_run(changes, said):
+    """The file states 0.5 m for boxes of 1 m."""
+    case = load_case("seed_stack", [f"container.{change}" for change in changes])
+    assert any("mass centre stays at 0.5 m" in note for note in preview_of(case).notes) is said
