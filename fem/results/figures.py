@@ -234,6 +234,7 @@ class LinkFigures(JsonBlock, Generic[ValueT]):
     link_slack_m: ValueT | None = shown("least gap or slack left", MM, OF_LINKS)
     #: over its own slenderness angle
     neighbour_rotation_ratio: ValueT | None = shown("rotation ratio of the neighbours", units.RATIO, OF_LINKS)
+    neighbour_slip_m: ValueT | None = shown("slip of the neighbours", MM, BAND)
 
 
 JOINT_SLIP = Shown(

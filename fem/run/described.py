@@ -8,9 +8,10 @@ from fem.case.case import Case
 from fem.case.tables.input_ranges import MU_KINETIC, STRIBECK, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.records.units import STANDARD_GRAVITY
-from fem.results.figures import BOX_FIGURES
+from fem.results.figures import BOX_FIGURES, FIGURES
 from fem.results.outcome import ROCKING, SLIDING, Outcome, least_slide
 from fem.results.run_result import (
+    Band,
     BoxReach,
     ChangedRun,
     FloorNumbers,
@@ -23,7 +24,7 @@ from fem.results.run_result import (
     Verdict,
 )
 from fem.run.sureness import below_uplift, rests_on_stiff_floor
-from fem.run.words import paragraphs, rows, sentence
+from fem.run.words import of_band, paragraphs, rows, sentence
 from fem.runtime.units import JOINT_MILLIMETRES, MANY, METRES, SHORT_MILLIMETRES, Reach, in_figures
 from fem.seismic.wind import COMBINATION
 
@@ -111,8 +112,9 @@ def link_rows(case: Case) -> list[tuple[str, str]]:
 
 def links_in_words(result: RunResult) -> str:
     """What each stop, tie and neighbour did, without a full stop; empty where there are none."""
-    neighbours = (result.verdict or Verdict()).neighbours or ()
-    return "; ".join(paragraphs("held.txt.j2", result=result, neighbours=neighbours))
+    verdict = result.verdict or Verdict()
+    known = {"neighbours": verdict.neighbours or (), "band": verdict.band or Band(), "of_band": of_band}
+    return "; ".join(paragraphs("held.txt.j2", result=result, FIGURES=FIGURES, **known))
 
 
 def fall_in_row(verdict: Verdict) -> tuple[float, int, str] | None:

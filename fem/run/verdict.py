@@ -248,6 +248,7 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
         "link_broken_at_s": _finite(float(links["broken_at"].min())),
         "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
         "neighbour_rotation_ratio": max((neighbour.rotation_ratio for neighbour in neighbours), default=None),
+        "neighbour_slip_m": max((neighbour.max_slip_m for neighbour in neighbours), default=None),
     }
 
 

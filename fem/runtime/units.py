@@ -10,6 +10,7 @@ Reach = tuple[float, float]
 
 WIDE = 0.1  #: width of a range over its larger end, from which two figures are enough
 FEW, MANY = 2, 4  #: significant figures
+FAR_BELOW = 10.0  #: of the longer unit in thousandths: ends below it keep the unit, each end then has its own
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
 
 
@@ -45,29 +46,24 @@ class DisplayUnit:
         """
         if value is None:
             return ""
-        if self.long and not bare and self.factor * max(map(abs, (value, *(reach or ())))) >= 1e3:
-            return self._longer().text(value, reach, figures=figures)
         kept = figures_of(reach, figures or self.figures)
+        if self.long and not bare and self.factor * max(map(abs, ends := (value, *(reach or ())))) >= 1e3:
+            if self.factor * min(map(abs, ends)) >= FAR_BELOW:
+                longer = replace(self, name=self.long, factor=1e-3 * self.factor, long="")
+                return longer.text(value, reach, figures=figures)
+            number, *of_range = (self.text(end, figures=kept) for end in ends)
+            return f"{number} ({' to '.join(of_range)})"
         low, high = (self.in_figures(end, kept) for end in reach or (value, value))
         number = self.in_figures(value, kept)
         words = number if low == high else f"{number} ({low} to {high})"
         return words if bare else f"{words} {self.name}".rstrip()
 
-    def range_text(self, reach: Reach | None) -> str:
-        """A range alone, such as "0.6 to 32 mm"; its one number where the ends are shown alike, empty without one."""
-        if reach is None:
-            return ""
-        if self.long and self.factor * max(map(abs, reach)) >= 1e3:
-            return self._longer().range_text(reach)
+    def range_text(self, reach: Reach) -> str:
+        """A range alone, such as "0.6 to 32 kN"; its one number where the ends are shown alike."""
         low, high = (self.in_figures(end, figures_of(reach, self.figures)) for end in reach)
         if 0.0 <= reach[0] < self.least < reach[1]:
             return f"up to {high} {self.name}".rstrip()
         return f"{low if low == high else f'{low} to {high}'} {self.name}".rstrip()
-
-    def _longer(self) -> "DisplayUnit":
-        return replace(
-            self, name=self.long, factor=1e-3 * self.factor, long="", least=max(self.least, 1.0 / self.factor)
-        )
 
     def in_figures(self, value: float, figures: int) -> str:
         """A number [SI] with so many significant figures, or the limit that it is below."""
