@@ -16,10 +16,10 @@ from fem.html.units import typeset
 from fem.report.animation import packed, packed_floats
 from fem.report.sweep_map import OUTCOMES, outcome_numbers
 from fem.results.errors import FolderError
+from fem.results.level import REGIME_UNSURE, SURE, UNSURE
 from fem.results.outcome import ending_of
 from fem.run.card import DOES, deciding_in_words, line
 from fem.run.compute import Run
-from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.runtime.identity import command_line
 from fem.study.axes import Axis, axis_name, in_words
 from fem.study.design import Sweep

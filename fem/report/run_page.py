@@ -30,6 +30,7 @@ from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.kinds import RUN
+from fem.results.level import SURE, Level, level_of, numerical, sure_in_words
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict, to_overturn
@@ -37,7 +38,6 @@ from fem.run import card, described, summary, words
 from fem.run.card import card_of
 from fem.run.drawn_links import drawn_links
 from fem.run.rigid_check import check_against_rigid_block
-from fem.run.sureness import SURE, numerical
 from fem.runtime.user_files import read_text
 from fem.solid.modes import FEW, elastic_mode_table
 
@@ -134,8 +134,7 @@ def _standing(verdict: Verdict) -> str:
     """How the verdict is coloured: what the run found, never whether that is safe."""
     if verdict.outcome == Outcome.OVERTURNED:
         return "fell"
-    unsure = verdict.outcome == Outcome.INVALID or (verdict.band is not None and verdict.band.unsure)
-    return "unsure" if unsure else "stood"
+    return "stood" if verdict.outcome is None or level_of(verdict) == Level.STANDS else "unsure"
 
 
 def _sure(verdict: Verdict) -> tuple[str, str]:
@@ -143,7 +142,7 @@ def _sure(verdict: Verdict) -> tuple[str, str]:
     if (band := verdict.band) is None:
         return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
     named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
-    known = verdict.sure_in_words or ("unsure" if band.unsure else "same outcome")
+    known = sure_in_words(verdict) or ("unsure" if band.unsure else "same outcome")
     if verdict.sure == SURE and all(map(numerical, band.members[1:])):
         known = "no input varied"
     return known, f"{', '.join(band.outcomes)}{f'; decided by {named}' if named else ''}"

@@ -18,7 +18,7 @@ from fem.html.units import typeset
 from fem.report.animation import colour_scale, packed
 from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
-from fem.run.sureness import REGIME_UNSURE, SURE, UNSURE
+from fem.results.level import REGIME_UNSURE, SURE, UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.study.axes import axis_label

@@ -11,11 +11,8 @@ from typing import Any
 
 from fem.results.figures import WHERE_GIVEN, BoxFigures, Figures, LinkFigures, Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
-from fem.results.outcome import ENDINGS, Outcome
+from fem.results.outcome import Outcome
 from fem.runtime.units import Reach
-
-#: factor below which a motion is hardly another one: by such changes "sure" was tried (`bench.py words`)
-SAME_MOTION = 1.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -273,6 +270,7 @@ class Verdict(RunFigures):
     corner_capacity_N: float | None = None
     plastic_work_J: float | None = None
     basis: str = "study"
+    level: str | None = None  #: the gravest of what the card says (`fem.results.level.Level`)
     first_line: str | None = None  #: the first line of the card
     #: what it does, the margin that governs, how far it moves, how sure that is, the static rule: a line each
     card: tuple[str, ...] = ()
@@ -311,21 +309,6 @@ class Verdict(RunFigures):
     def _repr_html_(self) -> str:
         """The card, for a notebook."""
         return "<br>".join(map(escape, self.card)) or escape(repr(self))
-
-    @property
-    def only_just(self) -> bool:
-        """True if it stands, and does not under a motion that is hardly another one."""
-        factor = self.margin.governing.factor if self.margin and self.margin.governing else None
-        return self.outcome not in ENDINGS and factor is not None and factor < SAME_MOTION
-
-    @property
-    def sure_in_words(self) -> str:
-        """How sure the outcome is, as people read it; empty where nothing was tried."""
-        if self.sure in ("sure", "regime unsure") and (self.only_just or self.still_turned):
-            return "stands until its run ends" if self.still_turned else "stands only just"
-        if self.sure != "regime unsure":
-            return self.sure or ""
-        return f"sure that it {'overturns' if self.outcome == Outcome.OVERTURNED else 'stands'}, not how it moves"
 
 
 @dataclass(frozen=True, kw_only=True)

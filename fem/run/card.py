@@ -17,6 +17,16 @@ from fem.case.tables.input_ranges import DASHPOT, WEAKENING
 from fem.case.tables.unknown_inputs import WORDS, in_words, value_in_words
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import RUN
+from fem.results.level import (
+    STANDING,
+    ending,
+    fallen_in_band,
+    level_of,
+    numerical,
+    only_just,
+    slips_of,
+    stands,
+)
 from fem.results.outcome import Ending
 from fem.results.run_result import (
     Band,
@@ -33,21 +43,14 @@ from fem.run.described import (
     doubts,
     fall_in_row,
     joints_in_words,
+    largest_joint_slip,
     links_in_words,
     part_covered,
     rule_says,
     sides_in_words,
     used,
 )
-from fem.run.sureness import (
-    below_uplift,
-    ending,
-    fallen_in_band,
-    numerical,
-    rests_on_stiff_floor,
-    stands,
-    static_use,
-)
+from fem.run.sureness import below_uplift, rests_on_stiff_floor, static_use
 from fem.run.words import largest_rotation, of_band, paragraphs, plastic_corner, reach_of, sentence
 from fem.runtime.intervals import binomial_interval
 from fem.runtime.units import PERCENT, in_figures
@@ -93,8 +96,9 @@ def with_words(result: RunResult, case: Case) -> RunResult:
     result = replace(result, warnings=tuple(warnings_for(result, case)))
     if result.verdict is None:
         return result
-    card = card_of(result)
-    return replace(result, verdict=replace(result.verdict, first_line=card[0], card=card))
+    card, known = card_of(result), result.verdict.outcome is not None
+    level = level_of(result.verdict) if known else None
+    return replace(result, verdict=replace(result.verdict, level=level, first_line=card[0], card=card))
 
 
 def card_of(result: RunResult) -> tuple[str, ...]:
@@ -121,8 +125,12 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     verdict, static = result.verdict or Verdict(), result.static or StaticResult()
     motion, angle, tilt = result.motion or MotionResult(), static.slenderness_angle_rad, verdict.tilt_rad
     leans = angle and tilt is not None and abs(tilt) >= LEANING * angle and not verdict.restored
-    slips = (*(reach_of(verdict, SLIPPED) or ()), verdict.slipped)
-    least_slip, most_slip = min(slips), max(slips)
+    least, own, most = slips_of(verdict)
+    place = math.inf if verdict.place_m is None else verdict.place_m
+    on_floor = max(verdict.slipped, *(reach_of(verdict, SLIPPED) or (0.0,)))
+    between, boxes = largest_joint_slip(verdict)
+    slip = of_band(verdict, SLIPPED)
+    by_box = (verdict.slipped if own > place else on_floor) <= place  #: not on the floor does it slide so far
     shown = {
         "SEEN": SEEN,
         "STAYS": STAYS,
@@ -131,15 +139,20 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "deciding_in_words": deciding_in_words,
         "verdict": verdict,
         "used": used,
-        "may_leave": verdict.place_m is not None and least_slip <= verdict.place_m < most_slip,
+        "STANDING": STANDING,
+        "only_just": only_just(verdict),
+        "leaves": own > place,
+        "may_leave": least <= place < most,
+        "place": most > place
+        and (boxes.replace(" on ", f" slides {between} on ") if by_box else f"it slides {slip}"),
         "steps": lambda step: PERCENT.text(step, figures=1),
         "static": static,
         "motion": motion,
         "in_row": fall_in_row(verdict),
         "others": fallen_in_band(verdict) if result.status in RUN.finished else None,
         "verbs": {Ending.OVERTURNED: "overturn", Ending.INVALID: "destroy"},
-        "most": most_slip,
-        "slip": of_band(verdict, SLIPPED),
+        "slid": on_floor > SEEN,
+        "slip": slip,
         "slip_at_end": of_band(verdict, "residual_slip_m"),
         "left_leaning": abs(tilt) if leans and tilt is not None else 0.0,
         "covered": part_covered(motion),

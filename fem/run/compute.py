@@ -32,6 +32,7 @@ from fem.model.support import normal_penalty
 from fem.results.fields import Fields, Frame, FrameKeeper
 from fem.results.history import History
 from fem.results.kinds import RUN
+from fem.results.level import SURE
 from fem.results.reader import RunData
 from fem.results.run_result import LinkResult, Numerics, RigidCheckResult, RunResult
 from fem.run.band import ChangedRunsFile, rests_far_below_limits, wants_band, with_band
@@ -43,7 +44,6 @@ from fem.run.opened import plotted
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress, simulate
-from fem.run.sureness import SURE
 from fem.run.verdict import energy_of, joint_demands, numerics_of, verdict_of
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions

@@ -24,12 +24,12 @@ from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.motion import peaks_in_run
 from fem.model.static_checks import static_checks_of
+from fem.results.level import fallen_in_band
 from fem.results.outcome import NOT_STANDING, Ending, Outcome, ending_of
 from fem.results.run_result import Governing, Margin, Numerics, RunResult, Verdict
 from fem.run.band import cost_of, key_of, tolerance_of_draws, worker_threads, workers_for
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
-from fem.run.sureness import fallen_in_band
 from fem.run.verdict import outcome_of
 
 LARGEST, LEAST = 4.0, 0.05  #: factors

@@ -21,10 +21,10 @@ from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.tables.unknown_inputs import INPUTS
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BOX_FIGURES, FELL_FIRST, Place, RunFigures, keys_of
-from fem.results.outcome import ENDINGS, NOT_STANDING, ROCKING, Ending, Outcome
+from fem.results.level import REGIME_UNSURE, SURE, UNSURE, ending, numerical, stands
+from fem.results.outcome import ROCKING, Outcome
 from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
 
-SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
 ANOTHER_SIZE = 10.0
 #: slip over the width, and rotation ratio, from which another size is another way to stand
 LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
@@ -115,28 +115,6 @@ def static_use(result: RunResult) -> float | None:
     if own.utilisation_sliding is None or own.utilisation_overturning is None:
         return None
     return max(own.utilisation_sliding, own.utilisation_overturning)
-
-
-def ending(run: RunFigures) -> Ending:
-    """What a run that did not fail counts as."""
-    return ENDINGS.get(run.outcome or "", Ending.STANDING)
-
-
-def fallen_in_band(verdict: Verdict) -> tuple[Ending, int, int] | None:
-    """How variations end that do not stand under the motion of the run, how many, of how many; None where all stand."""
-    members = verdict.band.members[1:] if verdict.band is not None else ()
-    tried = [ending(run) for run in members if run.outcome is not None and not numerical(run)]
-    return next(((kind, tried.count(kind), len(tried)) for kind in NOT_STANDING if kind in tried), None)
-
-
-def stands(run: RunFigures) -> bool:
-    """True if it neither overturned nor destroyed a corner."""
-    return ending(run) == Ending.STANDING
-
-
-def numerical(change: ChangedRun | InputChange) -> bool:
-    """True if it changes how the run is computed, and no input."""
-    return TOLERANCE in (change.values or {})
 
 
 def difference(own: RunFigures, other: RunFigures, width: float) -> int:

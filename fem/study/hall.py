@@ -35,10 +35,10 @@ from fem.results.disk import table_bytes
 from fem.results.figures import FIGURES, RUN_COLUMNS, SCALARS, SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
+from fem.results.level import STANDING, Level, in_a_word
 from fem.results.outcome import COUNTED_AS, Outcome, ending_of
 from fem.results.run_result import RunResult, Verdict
 from fem.run.card import card_of, times
-from fem.run.card import line as line_of_card
 from fem.run.described import sides_of
 from fem.run.expected import expected_s, expected_words, say_expected
 from fem.run.verdict import place_of
@@ -62,12 +62,11 @@ from fem.study.runner import CARD, CARD_LINES, CHECKED, Row, Runner, boxes_in, c
 from fem.study.table import Columns, line_of, plain_text
 
 REFUSED = "refused"  #: status of a row that cannot be computed
-LEAVES, NONE = "leaves its place", "has no outcome"
-#: what a container may do, the gravest first, in the words of `card.txt.j2`
-FALLS: tuple[str, ...] = ("overturns", "destroys a corner", NONE)
-DOUBTFUL: tuple[str, ...] = ("may overturn", "may destroy a corner", LEAVES, "may leave its place")
-STANDS: tuple[str, ...] = ("slides, rocks and stands", "slides and stands", "rocks and stands")
-GRAVEST = (*FALLS, *DOUBTFUL, *STANDS, "leaves the floor for moments and stands", "rests")
+NONE = "has no outcome"
+#: what a container may do, the gravest first
+FALLS: tuple[str, ...] = (Level.OVERTURNS, Level.DESTROYS, NONE)
+DOUBTFUL: tuple[str, ...] = tuple(level for level in Level if level not in (*FALLS, Level.STANDS))
+GRAVEST = (*FALLS, *DOUBTFUL, *STANDING.values())
 #: columns of a run, as in its log
 OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
 STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
@@ -414,6 +413,11 @@ def _ending_in(row: Row) -> str:
     return REFUSED if row["status"] == REFUSED else COUNTED_AS[ending_of(row["status"], row["outcome"])]
 
 
+def _slipped_most(row: Row) -> float:
+    """Largest slip, on the floor or of a box on another [m]."""
+    return max(row.get(SLIPPED) or 0.0, row.get("max_joint_slip_m") or 0.0)
+
+
 def weakness(row: Row) -> tuple[float, ...]:
     """Smaller for the worse: by what it counts as, its governing margin, rotation, static rule and slip.
 
@@ -423,7 +427,8 @@ def weakness(row: Row) -> tuple[float, ...]:
     ending, margin = _ending_in(row), row.get("margin_governs") or row.get("margin_tried_to")
     turned, static, slip = (row.get(name) or 0.0 for name in (TURNED, "utilisation_overturning", SLIPPED))
     if ending == "stood":
-        ending = LEAVES if slip > row.get("place_m", math.inf) else MOVED[row["outcome"] != Outcome.REST]
+        left = _slipped_most(row) > row.get("place_m", math.inf)
+        ending = Level.LEAVES if left else MOVED[row["outcome"] != Outcome.REST]
         ending = row["does"] if row.get("does") in DOUBTFUL else ending
     if ending in WORST_FIRST[:3] or (static and turned <= ROCKS):
         turned = 0.0
@@ -582,15 +587,16 @@ def _written(
     stated = f"sep={separator}\n" * (separator not in ",;\t")
     results.write(TABLE, stated + "".join(f"{line}\n" for line in lines))
     results.remove("report.html")  # the command makes another
-    left = [row for row in result.ranked if row["does"] == LEAVES]
-    farthest = max(left, key=itemgetter(SLIPPED), default=None)
+    left = [row for row in result.ranked if row["does"] == Level.LEAVES]
+    farthest = max(left, key=_slipped_most, default=None)
     tried = (row for row in result.ranked if row["margin_governs"] is not None)
     least = min(tried, key=itemgetter("margin_governs"), default=None)
     known: dict[str, Any] = {
         "left": left,
+        "stand": (Level.UNSURE, Level.ENDS_ROCKING, Level.ONLY_JUST),
         "farthest": farthest,
         "least": least,
-        "slid": farthest and FIGURES[SLIPPED].unit.text(farthest[SLIPPED], figures=2),
+        "slid": farthest and FIGURES[SLIPPED].unit.text(_slipped_most(farthest), figures=2),
         "margin": least and times(least["margin_governs"]),
     }
     return replace(result, answer=text_of("hall_answer.txt.j2", result=result, **known))
@@ -625,7 +631,7 @@ def _governing(hall: Hall, items: Sequence[Item], row_of: Callable[[Item], Row])
         )
         row |= {"does": NONE, "card": ""}
         if verdict.outcome is not None:
-            row |= {"does": line_of_card(run, "word"), "card": CARD_LINES.join(card_of(run))}
+            row |= {"does": in_a_word(verdict), "card": CARD_LINES.join(card_of(run))}
         sides.append((item, row | {name: getattr(static.ruling, name) for name in STATIC}))
     item, row = min(sides, key=lambda side: weakness(side[1]))
     rows = [min(rows[motion::motions], key=weakness) for motion in range(motions)]

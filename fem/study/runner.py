@@ -21,8 +21,8 @@ from fem.model.model import Model, build_model
 from fem.model.motion import build_motions
 from fem.model.recovery import recovery_of
 from fem.results.figures import BOXES, SCALARS, BoxResult
+from fem.results.level import in_a_word
 from fem.results.run_result import Verdict
-from fem.run.card import line as line_of_card
 from fem.run.compute import Run, WantedChecks, compute_on, require_case
 from fem.run.expected import say_expected
 from fem.run.recorder import Recorder
@@ -287,7 +287,7 @@ def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[R
                 break
             verdict, margin = run.verdict, run.verdict.margin
             row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
-            row |= {"does": line_of_card(run.typed_result, "word"), "card": CARD_LINES.join(verdict.card)}
+            row |= {"does": in_a_word(verdict), "card": CARD_LINES.join(verdict.card)}
             if margin is not None:
                 tried = margin.largest_tried if margin.factor is None else None
                 governs = margin.governing and margin.governing.factor

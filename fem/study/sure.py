@@ -24,14 +24,12 @@ from fem.model.geometry import build_container
 from fem.model.motion import build_motions
 from fem.model.support import normal_penalty
 from fem.results.figures import BOXES, FELL_FIRST, RUN_COLUMNS, TURNED, RunFigures, types_of
+from fem.results.level import REGIME_UNSURE, SURE, UNSURE
 from fem.results.outcome import Ending, ending_of
 from fem.run.compute import chosen_values
 from fem.run.sureness import (
     OTHER_END,
-    REGIME_UNSURE,
     SAME,
-    SURE,
-    UNSURE,
     Change,
     changes_of,
     deciding_inputs,

@@ -16,6 +16,7 @@ from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
+from fem.results.level import sure_in_words
 from fem.results.reader import open_run
 from fem.run.compute import compute
 from fem.run.described import part_covered
@@ -165,8 +166,8 @@ def test_a_run_that_ends_in_mid_swing_says_so_and_is_not_sure():
     assert (whole.verdict.outcome, cut.verdict.outcome) == ("overturned", "rock")
     at_end = abs(cut.history["rotation_rad"][-1]) / cut.slenderness_angle
     assert cut.verdict.still_turned == pytest.approx(at_end, rel=1e-3) and at_end > 0.5
-    assert "still rocks at the end" in cut.verdict.first_line
-    assert cut.verdict.sure_in_words == "stands until its run ends"
+    assert "until its run ends, still turned by" in cut.verdict.first_line
+    assert sure_in_words(cut.verdict) == "stands until its run ends"
     assert any(warning.startswith("the run ends while") for warning in cut.typed_result.warnings)
     assert whole.verdict.still_turned is None
 

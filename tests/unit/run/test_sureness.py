@@ -7,6 +7,7 @@ from cases import named_case
 
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BoxResult
+from fem.results.level import in_a_word, level_of, sure_in_words
 from fem.results.run_result import ChangedRun, Governing, Margin, RunResult, Verdict
 from fem.run.card import line, times, warnings_for
 from fem.run.sureness import judged
@@ -45,6 +46,40 @@ def verdict(*found, left_out=(), **own):
 FELL = {"outcome": "overturned", "rotation_ratio": 5.9}
 RESTS = {"outcome": "rest", "rotation_ratio": 1e-4, "max_slip_m": 1e-6}
 FAILED = {"outcome": None, "status": "failed", "rotation_ratio": None}
+CRUSHED = {"outcome": "invalid"}
+
+
+def margin_at(factor, of="case"):
+    """A margin that governs."""
+    governing = Governing(factor=factor, of=of, variations=2, variations_overturned=0, variations_destroyed=0)
+    return Margin(least_tried=1.0, largest_tried=4.0, runs=9, governing=governing)
+
+
+def boxes(**changed):
+    """Of a stack of three; `rotations`, `slips` and `openings` of some of them, from the floor up."""
+    figures = {"rotations": (0.05, 0.05, 0.05), "slips": (0.2, 0.002, 0.0), "openings": (0.05, 0.0, 0.0)}
+    columns = (figures | changed).values()
+    return tuple(
+        BoxResult(
+            max_rotation_rad=rotation, max_slip_m=slip, residual_slip_m=-slip, max_opening_m=gap, fell=False
+        )
+        for rotation, slip, gap in zip(*columns, strict=True)
+    )
+
+
+#: what levels take beside a run and its variations, and what is said of them
+JUST, APART = {"margin": margin_at(1.04)}, boxes(slips=(0.2, 0.35, 0.0))
+UNSURE, ENDS = (
+    "stands, which is not sure",
+    "slides 200 mm, rocks and stands until its run ends, still turned by 30 %",
+)
+LEFT = "leaves its place: it slides 200 mm, more than its own width of 100 mm; it stands, but only just"
+MAY = (
+    "may leave its place: it slides 200 (200 to 400) mm, in some variations more than its own width of 300 mm"
+)
+BOX = (
+    "leaves its place: box 2 slides 350 mm on box 1, more than its own width of 300 mm; it does not overturn"
+)
 
 
 @pytest.mark.parametrize(
@@ -89,12 +124,42 @@ def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, dec
     ],
 )
 def test_what_falls_under_a_motion_that_is_hardly_another_one_is_not_called_sure(factor, of, said):
-    governing = Governing(factor=factor, of=of, variations=2, variations_overturned=0, variations_destroyed=0)
-    judgement = verdict((HALF, {}), (STIFF, {}))
-    margin = Margin(least_tried=1.0, largest_tried=4.0, runs=9, governing=governing)
-    judgement = replace(judgement, margin=margin)
+    judgement = replace(verdict((HALF, {}), (STIFF, {})), margin=margin_at(factor, of))
     assert line(RunResult(status="completed", verdict=judgement), "sureness").startswith(said)
-    assert (judgement.sure_in_words == "sure") is said.startswith("sure")
+    assert (sure_in_words(judgement) == "sure") is said.startswith("sure")
+
+
+@pytest.mark.parametrize(
+    ("found", "own", "more", "level", "word", "said"),
+    [
+        ({}, FELL, {}, "overturns", "overturns", "overturns"),
+        ({}, {"outcome": "invalid"}, {}, "destroys a corner", "destroys a corner", "not valid"),
+        (FELL, {}, {}, "may overturn", "may overturn", "may overturn: 1 of 2 variations"),
+        (CRUSHED, {}, {}, "may destroy a corner", "may destroy a corner", "may destroy a corner: 1 of 2"),
+        (FAILED, {}, {}, UNSURE, UNSURE, "slides 200 mm, rocks and stands, which is not sure"),
+        ({}, {}, {"still_turned": 0.3}, "stands until its run ends", "stands until its run ends", ENDS),
+        ({}, {}, {"place_m": 0.1} | JUST, "leaves its place", "leaves its place", LEFT),
+        ({"max_slip_m": 0.4}, {}, {"place_m": 0.3} | JUST, "stands only just", "stands only just", MAY),
+        ({"max_slip_m": 0.4}, {}, {"place_m": 0.3}, "may leave its place", "may leave its place", MAY),
+        (
+            {},
+            {},
+            JUST,
+            "stands only just",
+            "stands only just",
+            "slides 200 mm, rocks and stands, but only just",
+        ),
+        ({}, {}, {"place_m": 0.3}, "stands", "slides, rocks and stands", "slides 200 mm, rocks and stands"),
+        # boxes of a stack that slide on one another
+        ({}, {"boxes": APART}, {"place_m": 0.3}, "leaves its place", "leaves its place", BOX),
+    ],
+)
+def test_the_gravest_of_run_band_and_margin_is_the_level_and_is_said_first(
+    found, own, more, level, word, said
+):
+    judgement = replace(verdict((HALF, found), (STIFF, {}), **own), **more)
+    assert (level_of(judgement), in_a_word(judgement)) == (level, word)
+    assert line(RunResult(status="completed", verdict=judgement), "does").startswith(said)
 
 
 @pytest.mark.parametrize(
@@ -109,18 +174,6 @@ def test_a_slip_that_scatters_with_the_accuracy_is_said_and_is_within_its_range(
     if said:
         assert judgement.band.max_slip_m == (0.2, 0.3)
         assert "200 mm, and 300 mm" in scatters[0]
-
-
-def boxes(**changed):
-    """Of a stack of three; `rotations`, `slips` and `openings` of some of them, from the floor up."""
-    figures = {"rotations": (0.05, 0.05, 0.05), "slips": (0.2, 0.002, 0.0), "openings": (0.05, 0.0, 0.0)}
-    columns = (figures | changed).values()
-    return tuple(
-        BoxResult(
-            max_rotation_rad=rotation, max_slip_m=slip, residual_slip_m=-slip, max_opening_m=gap, fell=False
-        )
-        for rotation, slip, gap in zip(*columns, strict=True)
-    )
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,9 @@ from fem.case.case import load_case
 from fem.case.validation import CaseError
 from fem.html.units import typeset
 from fem.results.figures import SCALARS
+from fem.results.level import STANDING, Level
 from fem.run.compute import compute
-from fem.study.hall import FALLS, GRAVEST, LEAVES, STANDS, read_hall, run_hall, weakness
+from fem.study.hall import FALLS, GRAVEST, read_hall, run_hall, weakness
 from fem.study.table import table_text
 
 BASE = """
@@ -169,7 +170,12 @@ def test_the_gravest_stands_first_with_the_card_of_its_run(tmp_path, base, capsy
     table = json.loads((tmp_path / "out/hall.json").read_text())["table"]
     ranked = sorted(table, key=lambda row: row["rank"])
     assert [row["name"] for row in ranked] == ["falls", "destroyed", "leaves", "rocks", "slides", "rests"]
-    assert [row["does"] for row in ranked] == [*FALLS[:2], LEAVES, *STANDS[:2], GRAVEST[-1]]
+    assert [row["does"] for row in ranked] == [
+        *FALLS[:2],
+        Level.LEAVES,
+        *[*STANDING.values()][:2],
+        GRAVEST[-1],
+    ]
     texts = {row["name"]: row for row in rows_of(tmp_path / "out" / "hall.csv")}
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     for row in ranked:
