@@ -128,8 +128,8 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     least, own, most = slips_of(verdict)
     place = math.inf if verdict.place_m is None else verdict.place_m
     on_floor = max(verdict.slipped, *(reach_of(verdict, SLIPPED) or (0.0,)))
-    between, boxes = largest_joint_slip(verdict)
-    slip = of_band(verdict, SLIPPED)
+    joint_slip, boxes = largest_joint_slip(verdict)
+    between, slip = boxes.replace(" on ", f" slides {joint_slip} on "), of_band(verdict, SLIPPED)
     by_box = (verdict.slipped if own > place else on_floor) <= place  #: not on the floor does it slide so far
     shown = {
         "SEEN": SEEN,
@@ -143,8 +143,8 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "only_just": only_just(verdict),
         "leaves": own > place,
         "may_leave": least <= place < most,
-        "place": most > place
-        and (boxes.replace(" on ", f" slides {between} on ") if by_box else f"it slides {slip}"),
+        "place": most > place and (between if by_box else f"it slides {slip}"),
+        "between": between if most > max(on_floor, SEEN) and not (most > place and by_box) else "",
         "steps": lambda step: PERCENT.text(step, figures=1),
         "static": static,
         "motion": motion,
