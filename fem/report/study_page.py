@@ -21,6 +21,7 @@ from fem.response.lasting import ResponseResult, response_answer, stable_in_word
 from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
+from fem.results.level import STANDING
 from fem.results.outcome import COUNTED, Outcome
 from fem.run import described
 from fem.run.card import deciding_in_words, times
@@ -357,7 +358,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
 def folded(ranked: Sequence[A_ROW]) -> tuple[list[A_ROW], list[A_ROW]]:
     """Rows of the list, those of equal containers as one; apart from them the containers at rest, where they are many.
 
-    `ranked`: the weakest first.
+    `ranked`: the weakest first. What rests, but whose variations do something else, is not among those at rest.
     """
     alike: dict[tuple[str, str], list[A_ROW]] = {}
     for row in ranked:
@@ -369,10 +370,12 @@ def folded(ranked: Sequence[A_ROW]) -> tuple[list[A_ROW], list[A_ROW]]:
         else group[0]
         for group in alike.values()
     ]
-    resting = [row for row in rows if row["outcome"] == Outcome.REST]
+    resting = [
+        row for row in rows if (row.get("does") or row["outcome"]) in (Outcome.REST, STANDING[Outcome.REST])
+    ]
     if len(resting) < MANY_RESTS or len(resting) == len(rows):
         return rows, []
-    return [row for row in rows if row["outcome"] != Outcome.REST], resting
+    return [row for row in rows if row not in resting], resting
 
 
 def margin_words(row: A_ROW) -> str:

@@ -22,7 +22,6 @@ class DisplayUnit:
     factor: float = 1.0  #: from SI to this unit
     least: float = 0.0  #: sizes below it [SI] are shown as that limit
     figures: int = MANY  #: significant figures, without trailing zeros where they are four
-    under: str = "<"  #: the word before that limit
     whole: bool = False  #: it counts
     full: bool = False  #: no digit before the point is rounded off
     #: the unit a thousand times as large, for sizes from there on; tables of one unit keep this one
@@ -69,9 +68,7 @@ class DisplayUnit:
         """A number [SI] with so many significant figures, or the limit that it is below."""
         if self.full:
             figures = max(figures, len(str(int(abs(self.factor * value)))))
-        return (
-            f"{value:.0f}" if self.whole else in_figures(value, figures, self.factor, self.least, self.under)
-        )
+        return f"{value:.0f}" if self.whole else in_figures(value, figures, self.factor, self.least)
 
 
 def figures_of(reach: Reach | None, many: int = MANY) -> int:
@@ -86,13 +83,13 @@ def in_unit(value: float, factor: float) -> float:
     return float(f"{factor * value:.12g}")
 
 
-def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0, under: str = "<") -> str:
+def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0) -> str:
     """A number with so many significant figures, without an exponent where it has at most six digits."""
     number = in_unit(value, factor)
     if abs(number) < INVISIBLE:
         return "0"
     if abs(value) < least:
-        return f"{under} {factor * least:g}"
+        return f"< {factor * least:g}"
     digits = figures - 1 - math.floor(math.log10(abs(float(f"{number:.{figures - 1}e}"))))
     if not -4 <= digits - figures + 1 <= 5 and abs(number) < 1e-4:
         return f"{number:.{figures - 1}e}"
@@ -118,7 +115,7 @@ MILLIMETRES = DisplayUnit(name="mm", factor=1e3, least=1e-5, long="m")
 METRES = DisplayUnit(name="m")
 SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
 #: what loose boxes slip at impacts is less known than that: their joints' dashpots decide it
-JOINT_MILLIMETRES = replace(SHORT_MILLIMETRES, least=1e-3, under="under")
+JOINT_MILLIMETRES = replace(SHORT_MILLIMETRES, least=1e-3)
 DEGREES = DisplayUnit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
 #: of a rotation to the slenderness angle; a tenth of what counts as rocking
 RATIO = DisplayUnit(least=1e-3, figures=3)

@@ -79,3 +79,5 @@ def test_equal_containers_are_one_row_and_those_that_rest_stand_apart():
     assert [row["name"] for row in resting] == ["C1", "C2", "C3 and 1 alike"]
     assert resting[-1]["line"] == "5, 6" and resting[-1]["count"] == 2
     assert folded(ranked[:3]) == (ranked[:3], []) and folded(ranked[1:4]) == (ranked[1:4], [])
+    doubtful = ranked[1] | {"command": "run 4", "does": "may overturn"}
+    assert folded([doubtful, *ranked[1:4]]) == ([doubtful], ranked[1:4])
