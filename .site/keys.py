@@ -27,7 +27,8 @@ from fem.results.figures import FIGURES, RunFigures
 from fem.results.run_result import ActionResult, RunResult, Verdict
 from fem.site.result import SiteResult
 from fem.study.fragility import EnsembleResult
-from fem.study.hall import OWN, RESULT_COLUMNS, HallResult
+from fem.study.hall_file import OWN
+from fem.study.hall_result import RESULT_COLUMNS, HallResult
 from fem.study.sweep_table import BAND, FOUND, SweepResult
 
 EXPLAINED = Path(__file__).parents[1] / "fem/case/keys.md"

@@ -125,20 +125,20 @@ NO_FAULT = {
 BUDGET = {
     "mesh": ("mesh", 1_572, 42),
     "contact": ("contact", 8_727, 300),
-    "runtime": ("fem/runtime", 1_065, 61),
+    "runtime": ("fem/runtime", 1_062, 61),
     "records": ("fem/records", 2_397, 46),
     "case": ("fem/case", 5_146, 122),
     "results": ("fem/results", 2_985, 104),
     "seismic": ("fem/seismic", 2_140, 60),
     "solid": ("fem/solid", 1_669, 60),
     "model": ("fem/model", 3_810, 115),
-    "run": ("fem/run", 4_444, 139),
-    "pages": ("fem/html fem/figures fem/render fem/report", 4_857, 127),
-    "study": ("fem/study fem/response", 7_002, 197),
+    "run": ("fem/run", 4_445, 139),
+    "pages": ("fem/html fem/figures fem/render fem/report", 4_860, 127),
+    "study": ("fem/study fem/response", 7_041, 197),
     "site": ("fem/site", 4_372, 113),
-    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_785, 42),
-    "product": ("mesh contact fem", 51_971, 1_528),
-    "tests": ("tests", 36_170, 2_133),
+    "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_786, 42),
+    "product": ("mesh contact fem", 52_012, 1_528),
+    "tests": ("tests", 36_176, 2_133),
 }
 
 

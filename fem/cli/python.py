@@ -21,7 +21,8 @@ from fem.site.request import load_site
 from fem.site.run import run_site
 from fem.study.ensemble import run_ensemble
 from fem.study.file import load_ensemble, load_sweep
-from fem.study.hall import Checks, read_hall, run_hall
+from fem.study.hall import Checks, run_hall
+from fem.study.hall_file import read_hall
 from fem.study.sweep import run_sweep
 
 OUTPUTS = Path("outputs")

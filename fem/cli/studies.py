@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fem.response.lasting import ResponseResult
     from fem.site.result import SiteResult
     from fem.study.fragility import EnsembleResult
-    from fem.study.hall import HallResult
+    from fem.study.hall_result import HallResult
     from fem.study.sweep_table import SweepResult
 
 SiteFile = Annotated[str, console.option("A site file or the name of a shipped one: site, cologne.", "SITE")]
@@ -155,7 +155,7 @@ def batch(
         one_side: Leave out a narrower side across; else the worse governs.
         pdf: Print the short page to report-short.pdf, by Chromium or Chrome.
     """
-    listed = _of("study.hall:read_hall")(hall)
+    listed = _of("study.hall_file:read_hall")(hall)
     base = load_case(case, overrides, allow_outside=allow_outside)
 
     def shown(result: "HallResult", folder: Path) -> dict[str, Any]:

@@ -42,7 +42,7 @@ from fem.study.answers import (
 from fem.study.axes import Axis, axis_label, in_words, unit_of_people
 from fem.study.driver import COMPLETED, StudyResult, read_study
 from fem.study.fragility import EnsembleResult
-from fem.study.hall import DOUBTFUL, FALLS, HallResult
+from fem.study.hall_result import DOUBTFUL, FALLS, HallResult
 from fem.study.sure import CHANGES, change_columns, input_in_words
 from fem.study.sweep_table import SweepTable, open_sweep
 from fem.study.table import read_rows

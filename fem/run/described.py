@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from contact.stepping.modes import ROCKING as ROCKING_SHARE
 from fem.case.case import Case
@@ -113,8 +114,8 @@ def link_rows(case: Case) -> list[tuple[str, str]]:
 def links_in_words(result: RunResult) -> str:
     """What each stop, tie and neighbour did, without a full stop; empty where there are none."""
     verdict = result.verdict or Verdict()
-    known = {"neighbours": verdict.neighbours or (), "band": verdict.band or Band(), "of_band": of_band}
-    return "; ".join(paragraphs("held.txt.j2", result=result, FIGURES=FIGURES, **known))
+    known: dict[str, Any] = {"neighbours": verdict.neighbours or (), "band": verdict.band or Band()}
+    return "; ".join(paragraphs("held.txt.j2", result=result, FIGURES=FIGURES, of_band=of_band, **known))
 
 
 def fall_in_row(verdict: Verdict) -> tuple[float, int, str] | None:

@@ -1,41 +1,35 @@
-"""A list of containers: which differ, the run of each under each motion, the weakest repeated, the list with results.
+"""A list of containers computed: which differ, the run of each under each motion, the weakest repeated, the results.
 
-What is wrong with the list as a whole is an error; what is wrong with a row is its reason. The runs are logged as they
-are ready, so an interrupted list continues where it was; its files depend neither on that nor on the number of cores. A
-list of which names or tags alone have changed is written again, not computed.
+The runs are logged as they are ready, so an interrupted list continues where it was; its files depend neither on that
+nor on the number of cores. A list of which names or tags alone have changed is written again, not computed.
 """
 
-import difflib
 import math
 import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Unpack, get_args
+from typing import Any, Literal, Unpack
 
 from fem.case.case import Case, case_hash
 from fem.case.data_files import as_named_from
-from fem.case.overrides import parse_override
-from fem.case.tables.all_tables import TABLES
 from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_document, toml_value
-from fem.case.validation import CaseError, known_keys, quantity_of
+from fem.case.validation import CaseError
 from fem.html.page import text_of
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, motion_result, peaks_in_run
 from fem.model.static_checks import static_checks_of
-from fem.records.source import decoded
-from fem.records.table import UserTable, number_in
 from fem.results.disk import table_bytes
-from fem.results.figures import FIGURES, RUN_COLUMNS, SCALARS, SLIPPED, TURNED
+from fem.results.figures import FIGURES, SCALARS, SLIPPED, TURNED
 from fem.results.folder import ResultFolder
 from fem.results.kinds import HALL
-from fem.results.level import STANDING, Level, in_a_word
+from fem.results.level import Level, in_a_word
 from fem.results.outcome import COUNTED_AS, Outcome, ending_of
 from fem.results.run_result import RunResult, Verdict
 from fem.run.card import card_of, times
@@ -43,273 +37,35 @@ from fem.run.described import sides_of
 from fem.run.expected import expected_s, expected_words, say_expected
 from fem.run.verdict import place_of
 from fem.runtime.identity import command_line
-from fem.runtime.terminal import one_line
-from fem.runtime.user_files import read_regular
-from fem.study.axes import MOTION_FILE, NAMED, NO_AXIS, VERTICAL_FILE, AxisError, field_of, read_axis
+from fem.study.axes import MOTION_FILE, VERTICAL_FILE, AxisError, read_axis
 from fem.study.design import Design, Item
 from fem.study.driver import (
     COMPLETED,
     FAILED,
     Study,
     StudyOptions,
-    StudyResult,
     hash_of,
     run_study,
     runner_of,
 )
+from fem.study.hall_file import HallFile, HallRow
+from fem.study.hall_result import (
+    DOUBTFUL,
+    NONE,
+    OF_A_RUN,
+    OF_MOTIONS,
+    REFUSED,
+    RESULT_COLUMNS,
+    STATIC,
+    HallResult,
+)
 from fem.study.motions import FloorMotionPair, motions_left_out, read_motion_set
 from fem.study.runner import CARD, CARD_LINES, CHECKED, Row, Runner, boxes_in, check_chunk
-from fem.study.table import Columns, line_of, plain_text
-
-REFUSED = "refused"  #: status of a row that cannot be computed
-NONE = "has no outcome"
-#: what a container may do, the gravest first
-FALLS: tuple[str, ...] = (Level.OVERTURNS, Level.DESTROYS, NONE)
-DOUBTFUL: tuple[str, ...] = tuple(level for level in Level if level not in (*FALLS, Level.STANDS))
-GRAVEST = (*FALLS, *DOUBTFUL, *STANDING.values())
-#: columns of a run, as in its log
-OF_A_RUN = {"status": str} | RUN_COLUMNS | {"reason": str}
-STATIC = dict.fromkeys(("utilisation_sliding", "utilisation_overturning"), float)
-#: of a container under several motions
-OF_MOTIONS: Columns = {"motion": str}
-OF_MOTIONS |= dict.fromkeys(("motions_overturned", "motions_invalid", "motions_failed"), int)
-OF_MOTIONS |= {"largest_slip_m": float, "largest_slip_motion": str}
-COLUMNS = OF_A_RUN | CHECKED | STATIC | OF_MOTIONS | {"rank": int, "side": str}
-FIRST = ("status", "reason", "outcome", *[*CHECKED][:3], TURNED, SLIPPED, "tilt_rad")
-#: of a row of the list
-ROW_COLUMNS = {"row": int, "line": int, "name": str, "count": int, "tag": str, "command": str}
-ROW_COLUMNS |= CARD
-#: behind the columns of the list
-RESULT_COLUMNS = {name: COLUMNS[name] for name in (*FIRST, *STATIC, *OF_MOTIONS, *CHECKED, *COLUMNS)}
-RESULT_COLUMNS["first_line"] = str
-OF_A_TAG = {"tag": str, "containers": int, "counts": dict[str, int], "margin": float}
-
-
-@dataclass(frozen=True, kw_only=True)
-class HallResult(StudyResult):
-    """All results of a hall."""
-
-    written_where_given = StudyResult.written_where_given | {"allow_outside", "one_side"}
-    columns_of: ClassVar[Mapping[str, Any]] = {"table": RESULT_COLUMNS | ROW_COLUMNS, "tags": OF_A_TAG}
-    needed = frozenset({"status", *ROW_COLUMNS, *OF_A_TAG} - {"command", "margin", "does", "card"})
-    hall: str
-    case: str
-    asked: str  #: hash of what is computed
-    listed: str = ""  #: hash of the list
-    model: str
-    motions: tuple[str, ...] = ()  #: files, of pairs both, as they were named; empty: the motion of the case
-    motion_covered: str | None = None
-    rows: int  #: of the list
-    containers: int  #: rows times their counts
-    distinct: int  #: containers that were computed
-    refused: int = 0  #: rows
-    runs: int = 0
-    checks: str = "weakest"  #: which runs are repeated: weakest | all | none
-    checked: int = 0  #: containers whose run was repeated
-    one_side: bool | None = None  #: whether only the width was looked at
-    #: of containers, by count
-    outcomes: dict[str, int] = field(default_factory=dict)
-    #: what the containers of each tag did: stood, overturned, invalid, failed, refused
-    tags: tuple[dict[str, Any], ...] = ()
-    kept: tuple[str, ...] = ()  #: columns of the list that set nothing
-    columns: tuple[str, ...] = ()  #: of the list
-    allow_outside: bool | None = None  #: files of the case may lie outside its folder
-    table: tuple[dict[str, Any], ...] = ()  #: rows of `hall.csv`, with `row`, `name`, `count`, `command`
-
-    @property
-    def extent(self) -> str:
-        """How much there is of it, in words."""
-        under = f" under {len(self.motions)} motions" if len(self.motions) > 1 else ""
-        return f"{self.rows} rows, {self.containers} containers, {self.distinct} that differ{under}: {self.runs} runs"
-
-    @property
-    def ranked(self) -> list[dict[str, Any]]:
-        """The rows that were computed, the weakest first."""
-        return sorted((row for row in self.table if row["rank"]), key=lambda row: (row["rank"], row["row"]))
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """How many containers do what, the gravest first."""
-        counts = Counter[str]()
-        for row in self.ranked:
-            counts[row.get("does") or row["outcome"]] += row["count"]
-        return {word: counts[word] for word in (*GRAVEST, *sorted({*counts} - {*GRAVEST})) if counts[word]}
-
-    @property
-    def not_computed(self) -> list[dict[str, Any]]:
-        """The rows that were refused."""
-        return [row for row in self.table if row["status"] == REFUSED]
-
+from fem.study.table import line_of
 
 DIGITS = 4  #: of a figure in the list; `hall.json` has all
-LARGEST_FILE = 512 * 2**20  #: [bytes]
-#: tables whose keys a column may name without the table
-PLAIN_TABLES = ("container", "contact", "support", "floor")
-NAME, COUNT, TAG = "name", "count", "tag"
-OWN = (NAME, COUNT, TAG)
-#: a unit at the end of a name, as people write it
-UNIT = re.compile(r"[ _]*[\[(]?\b(mm|cm|m|kg|t|g|kn|n|mpa|gpa|pa|rad|deg|s|hz)\b[\])]?$", re.IGNORECASE)
-LIKE = 0.8  #: likeness from which an unknown name is taken for a slip
-OTHER_NAMES = {"mu": "mu_static", "friction_coefficient": "mu_static"}
-LARGEST_COUNT = 10**9
 #: of a row, what the result says of it
 LISTED = ("line", "name", "count", "tag", "given")
-A_HEADER = "the first line must name the columns, such as name;width_m;height_m;mass_kg;mu_static"
-
-
-@dataclass(frozen=True, kw_only=True)
-class HallRow:
-    """A row of the list."""
-
-    line: int  #: of the file, where it ends
-    name: str
-    count: int
-    tag: str
-    given: Mapping[str, str]  #: its fields by column
-    values: Mapping[str, Any]  #: of the dotted keys that it sets
-    reason: str  #: why it cannot be used; empty: it can
-    across: Mapping[str, Any] = field(default_factory=dict)  #: keys that turn it; none: no narrower side
-    container: int | None = None  #: its number among those that differ, once the row is checked
-
-
-@dataclass(frozen=True, kw_only=True)
-class HallFile:
-    """A list as it was read."""
-
-    path: Path
-    table: UserTable
-    header: Sequence[str]  #: names of all columns; empty for a column without
-    #: of the columns that are read: a dotted key, a name of `OWN`; empty: it is kept
-    meanings: Mapping[str, str]
-
-    @property
-    def name(self) -> str:
-        """File stem."""
-        return self.path.stem
-
-    @property
-    def keys(self) -> list[str]:
-        """The dotted keys that columns name."""
-        return [meaning for meaning in self.meanings.values() if meaning and meaning not in OWN]
-
-    @cached_property
-    def decimal_mark(self) -> str:
-        """Of its numbers, a point or a comma; CaseError for both."""
-        numeric = [column for column, meaning in self.meanings.items() if meaning not in ("", NAME, TAG)]
-        return self.table.require_one_decimal_mark(map(self.header.index, numeric))
-
-    @cached_property
-    def rows(self) -> tuple[HallRow, ...]:
-        """A row for each line; CaseError for none, values below no name, decimal commas and points."""
-        if not self.table.lines:
-            raise CaseError(f"{self.path}: the list has a header and no rows; give one row a container")
-        self.table.require_names()
-        _ = self.decimal_mark
-        places = {column: self.header.index(column) for column in self.meanings}
-        named, rows = [k for k, name in enumerate(self.header) if name], []
-        for number, line in enumerate(self.table.lines, start=1):
-            given = {column: one_line(plain_text(line.field(k))) for column, k in places.items()}
-            texts = dict(zip(self.meanings.values(), given.values(), strict=True))
-            count, reason = number_in(texts.get(COUNT) or "1") or 0.0, ""
-            if not (count.is_integer() and 1.0 <= count <= LARGEST_COUNT):
-                count, reason = 1.0, f"count must be a whole number of at least 1, got {texts[COUNT]!r}"
-            whole = len(line.fields) > named[-1] and not any(line.fields[len(self.header) :])
-            if not whole:
-                reason = f"{len(line.fields)} fields, and the header names {len(named)} columns"
-            values = {key: _value(key, texts[key]) for key in self.keys if whole and texts[key]}
-            name, tag = texts.get(NAME) or str(number), texts.get(TAG, "")
-            own: dict[str, Any] = {"line": line.number, "name": name, "count": int(count), "tag": tag}
-            rows.append(HallRow(**own, given=given, values=values, reason=reason))
-        return tuple(rows)
-
-
-def read_hall(path: Path) -> HallFile:
-    """Read a list; its rows are read on first use. CaseError for what is no list, or a column that cannot be one."""
-    try:
-        text = decoded(read_regular(path, LARGEST_FILE))
-    except ValueError as error:
-        raise CaseError(f"{path} {error}; a list of containers is needed") from None
-    if text is None or "\0" in text:
-        raise CaseError(f"{path}: not a text file; save the list as CSV")
-    table = UserTable(str(path), text, CaseError)
-    names = [one_line(plain_text(name)) for name in table.header]
-    if not names:
-        raise CaseError(f"{path}: the list is empty; {A_HEADER}")
-    if not any(name.lower() in _plain_names() or name.partition(".")[0] in NAMED for name in names):
-        raise CaseError(f"{path}: line 1 names no key of a case, so there is no header; {A_HEADER}")
-    is_result = {"status", "outcome", TURNED} <= {*names}  # an earlier one, given as a list again
-    read = [name for name in names if name and not (is_result and name in RESULT_COLUMNS)]
-    problems, meanings = [], dict[str, str]()
-    plain = [key.rpartition(".")[2] for known in _plain_names().values() for key in known]
-    stems = {_stem(name): name for name in plain} | OTHER_NAMES
-    for column, count in Counter(read).items():
-        try:
-            if count > 1:
-                raise AxisError(f"occurs {count} times; keep one")
-            if column in RESULT_COLUMNS:
-                raise AxisError("has the name of a result; rename it")
-            meanings[column] = _meaning(column, stems)
-        except AxisError as error:
-            problems.append(f"column {column!r} {error}")
-    for meaning, count in Counter(filter(None, meanings.values())).items():
-        if count > 1:
-            same = [repr(column) for column in read if meanings.get(column) == meaning]
-            problems.append(f"columns {' and '.join(same)} both set {meaning!r}; keep one")
-    if problems:
-        raise CaseError("\n".join(f"{path}: {problem}" for problem in problems))
-    return HallFile(path=path, table=table, header=names, meanings=meanings)
-
-
-def _stem(name: str) -> str:
-    return UNIT.sub("", name.lower().replace(" ", "_").replace("-", "_")).strip("_ ")
-
-
-def _meaning(column: str, stems: Mapping[str, str]) -> str:
-    """What a column means: a dotted key, or a name of `OWN`; empty for one that is kept as it is.
-
-    AxisError for one that looks like a key and is none, or may be several. `stems`: known names, by their stems.
-    """
-    table, dot, _ = column.partition(".")
-    if dot and difflib.get_close_matches(table.lower(), NAMED, n=1, cutoff=LIKE):
-        field_of(column)
-        return "" if column in NO_AXIS or table == "document" else column
-    meant = _plain_names().get(column.lower(), [])
-    if len(meant) > 1:
-        raise AxisError(f"may be {' or '.join(meant)}; write one of them")
-    if meant:
-        return meant[0]
-    own = _stem(column)  # without its unit the same as a known name, or very like it
-    near = difflib.get_close_matches(own, stems, n=1, cutoff=LIKE) if len(own) > 1 else []
-    if near:
-        raise AxisError(
-            f"is no key of a case; did you mean {stems[near[0]]!r}? To keep it as a note, rename it, for instance to "
-            f"'note {column}'"
-        )
-    return ""
-
-
-@cache
-def _plain_names() -> dict[str, list[str]]:
-    """What a name without a table, in small letters, may mean: dotted keys, or itself."""
-    names = {name: [name] for name in (*OWN, "gravity_m_s2")}
-    for table in PLAIN_TABLES:
-        for key in known_keys(TABLES[table]):
-            if key != "box":  # a table
-                names.setdefault(key.lower(), []).append(f"{table}.{key}")
-    return names
-
-
-def _value(key: str, text: str) -> Any:
-    """A field as a case file would give it: a number, true or false, a list, else text."""
-    field, number = field_of(key), number_in(text)
-    whole = int in (field.annotation, *get_args(field.annotation))
-    if number is not None and (whole or quantity_of(field.annotation, field.metadata)):
-        return int(number) if whole and number.is_integer() else number
-    if text.lower() in ("true", "false"):
-        return text.lower() == "true"
-    return parse_override(f"{key}={text}")[1] if text[0] == "[" else plain_text(text)
-
-
 CENTROID = "container.centroid_m"
 TABLE, RUNS, CHECKS = "hall.csv", "runs.csv", "checks.csv"
 RUN_COLUMNS = {"container": int, "motion": int} | OF_A_RUN

@@ -18,7 +18,7 @@ from fem.study.axes import Axis, AxisError, in_words, read_axis  # noqa: F401 - 
 from fem.study.derived import ExpressionError, parse_expression  # noqa: F401
 from fem.study.file import load_ensemble, load_sweep
 from fem.study.fragility import EnsembleResult
-from fem.study.hall import read_hall
+from fem.study.hall_file import read_hall
 
 G = 9.80665
 PEAK = Axis(key="motion.peak_acceleration_m_s2", values=(0.2 * G, 0.4 * G, 0.6 * G), unit="m/s2")

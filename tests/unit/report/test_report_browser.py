@@ -17,7 +17,8 @@ from fem.report.study_page import ensemble_report, hall_report, response_report,
 from fem.results.errors import FolderError
 from fem.results.reader import open_run
 from fem.site.page import site_report
-from fem.study.hall import read_hall, run_hall
+from fem.study.hall import run_hall
+from fem.study.hall_file import read_hall
 from fem.study.sweep import run_sweep
 from fem.study.sweep_table import open_sweep
 

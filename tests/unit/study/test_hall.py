@@ -15,7 +15,9 @@ from fem.html.units import typeset
 from fem.results.figures import SCALARS
 from fem.results.level import STANDING, Level
 from fem.run.compute import compute
-from fem.study.hall import FALLS, GRAVEST, read_hall, run_hall, weakness
+from fem.study.hall import run_hall, weakness
+from fem.study.hall_file import read_hall
+from fem.study.hall_result import FALLS, GRAVEST
 from fem.study.table import table_text
 
 BASE = """

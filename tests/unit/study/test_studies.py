@@ -25,7 +25,8 @@ from fem.results.errors import FolderError, OutputError
 from fem.results.figures import RUN_COLUMNS
 from fem.runtime.progress import Reporter
 from fem.study.driver import LoggedRuns
-from fem.study.hall import read_hall, run_hall
+from fem.study.hall import run_hall
+from fem.study.hall_file import read_hall
 from fem.study.runner import Runner
 from fem.study.sweep import check_size, run_sweep
 from fem.study.sweep_table import open_sweep
