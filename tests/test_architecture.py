@@ -132,13 +132,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_140, 60),
     "solid": ("fem/solid", 1_669, 60),
     "model": ("fem/model", 3_810, 115),
-    "run": ("fem/run", 4_445, 139),
+    "run": ("fem/run", 4_437, 139),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_860, 127),
     "study": ("fem/study fem/response", 7_041, 197),
     "site": ("fem/site", 4_372, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_786, 42),
-    "product": ("mesh contact fem", 52_012, 1_528),
-    "tests": ("tests", 36_176, 2_133),
+    "product": ("mesh contact fem", 52_004, 1_528),
+    "tests": ("tests", 36_206, 2_134),
 }
 
 

@@ -34,7 +34,7 @@ STANDING = {
     Outcome.SLIDE_ROCK: "slides, rocks and stands",
     Outcome.SLIDE: "slides and stands",
     Outcome.ROCK: "rocks and stands",
-    Outcome.HOP: "leaves the floor for moments and stands",
+    Outcome.HOP: "lifts off and stands",
     Outcome.REST: "rests",
 }
 

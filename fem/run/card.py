@@ -15,18 +15,10 @@ from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.case.tables.input_ranges import DASHPOT, WEAKENING
 from fem.case.tables.unknown_inputs import WORDS, in_words, value_in_words
+from fem.results import level as levels
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import RUN
-from fem.results.level import (
-    STANDING,
-    ending,
-    fallen_in_band,
-    level_of,
-    numerical,
-    only_just,
-    slips_of,
-    stands,
-)
+from fem.results.level import ending, fallen_in_band, numerical, slips_of, stands
 from fem.results.outcome import Ending
 from fem.results.run_result import (
     Band,
@@ -97,7 +89,7 @@ def with_words(result: RunResult, case: Case) -> RunResult:
     if result.verdict is None:
         return result
     card, known = card_of(result), result.verdict.outcome is not None
-    level = level_of(result.verdict) if known else None
+    level = levels.level_of(result.verdict) if known else None
     return replace(result, verdict=replace(result.verdict, level=level, first_line=card[0], card=card))
 
 
@@ -128,6 +120,7 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
     least, own, most = slips_of(verdict)
     place = math.inf if verdict.place_m is None else verdict.place_m
     on_floor = max(verdict.slipped, *(reach_of(verdict, SLIPPED) or (0.0,)))
+    joints = [run.max_joint_slip_m or 0.0 for run in (verdict, *(verdict.band or Band()).members)]
     joint_slip, boxes = largest_joint_slip(verdict)
     between, slip = boxes.replace(" on ", f" slides {joint_slip} on "), of_band(verdict, SLIPPED)
     by_box = (verdict.slipped if own > place else on_floor) <= place  #: not on the floor does it slide so far
@@ -139,18 +132,17 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "deciding_in_words": deciding_in_words,
         "verdict": verdict,
         "used": used,
-        "STANDING": STANDING,
-        "only_just": only_just(verdict),
+        "levels": levels,
         "leaves": own > place,
         "may_leave": least <= place < most,
-        "place": most > place and (between if by_box else f"it slides {slip}"),
-        "between": between if most > max(on_floor, SEEN) and not (most > place and by_box) else "",
+        "place": most > place and (between if by_box else f"slides {slip}"),
+        "between": between if max(joints) > max(on_floor, SEEN) and not (most > place and by_box) else "",
         "steps": lambda step: PERCENT.text(step, figures=1),
         "static": static,
         "motion": motion,
         "in_row": fall_in_row(verdict),
         "others": fallen_in_band(verdict) if result.status in RUN.finished else None,
-        "verbs": {Ending.OVERTURNED: "overturn", Ending.INVALID: "destroy"},
+        "Ending": Ending,
         "slid": on_floor > SEEN,
         "slip": slip,
         "slip_at_end": of_band(verdict, "residual_slip_m"),

@@ -81,7 +81,7 @@ def part_covered(motion: MotionResult) -> str:
             motion.duration_s * (motion.peak_acceleration_m_s2 or 0.0) / motion.peak_velocity_m_s / math.tau
         )
         if periods < FEW_PERIODS:
-            return f"{motion.duration_s:.3g} s, {periods:.2g} periods of this motion"
+            return f"{periods:.2g} periods, {motion.duration_s:.3g} s"
     if cut.covered is None or cut.duration_s is None or cut.covered >= 1.0 - 1e-9:
         return ""
     part = f"{cut.covered * cut.duration_s:.4g} of {cut.duration_s:.4g} s"

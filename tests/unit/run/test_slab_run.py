@@ -118,4 +118,4 @@ def test_a_container_left_leaning_on_its_hole_is_said_to_lean():
     assert abs(verdict.tilt_rad) > 0.005 * angle and verdict.restored
     leaning = replace(verdict, tilt_rad=2.0 * verdict.tilt_rad, restored=False)  # a hole twice as deep
     share = f"{2.0 * abs(verdict.tilt_rad) / angle:.0%} less capacity"
-    assert share in card_of(replace(result, verdict=leaning))[0]
+    assert share in card_of(replace(result, verdict=leaning))[2]

@@ -186,7 +186,7 @@ def test_the_gravest_stands_first_with_the_card_of_its_run(tmp_path, base, capsy
         assert row["card"].split(" | ") == [first, *alone.card[1:]]
         assert first in said and texts[row["name"]]["first_line"] == first
         assert f"<strong>{row['name']}</strong>: {typeset(first)}" in page
-    assert "1 left its place by" in said and "more than the limit of 50.0 mm" in ranked[2]["card"]
+    assert "1 left its place by" in said and "beyond the limit, 50.0 mm; it stands" in ranked[2]["card"]
 
 
 def test_equal_rows_are_computed_once_and_labels_cost_nothing(tmp_path, base):
