@@ -138,7 +138,7 @@ BUDGET = {
     "site": ("fem/site", 4_372, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_786, 42),
     "product": ("mesh contact fem", 52_004, 1_528),
-    "tests": ("tests", 36_206, 2_134),
+    "tests": ("tests", 36_213, 2_134),
 }
 
 

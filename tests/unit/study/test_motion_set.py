@@ -210,9 +210,15 @@ def test_what_a_sweep_and_an_ensemble_ask_for_depends_on_what_the_files_hold(swe
     assert all(one != other for one, other in zip(before, asked(), strict=True))
 
 
-def test_draws_under_one_motion_are_no_sample_of_motions():
-    # Six motions, ten draws each; two motions overturn all, the others none: as much as two of six motions tell.
-    overturned = np.repeat([True, True, False, False, False, False], 10)
+@pytest.mark.parametrize(
+    "overturned",
+    [
+        np.repeat([True, True, False, False, False, False], 12),  # two motions overturn all, the others none
+        np.tile([True, False, False], 24),  # every motion overturns a third, and none differs from another
+    ],
+)
+def test_draws_under_one_motion_are_no_sample_of_motions(overturned):
+    """Six motions, twelve draws each: as much as two of six motions tell."""
     of_motions = estimate(overturned, ~overturned & overturned, replicates=6, confidence=0.95, independent=6)
     low, high = binomial_interval(2, 6, 0.95)
     assert of_motions.low <= low and of_motions.high >= high
