@@ -36,8 +36,8 @@ STORED = SiteResult.from_json(
 INPUTS, PERIODS = STORED.inputs, np.array(STORED.action.periods_s)
 SENTENCES = {
     None: "Not valid: the set of motions fails its checks.",
-    True: "Fulfilled under the rule below: none of 112 runs overturned.",
-    False: "Not fulfilled under the rule below: {} of 112 runs overturned.",
+    True: "Fulfilled under the stated rule: none of 112 runs overturned.",
+    False: "Not fulfilled under the stated rule: {} of 112 runs overturned.",
 }
 
 
