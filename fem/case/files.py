@@ -24,7 +24,9 @@ if TYPE_CHECKING:  # it loads numpy, which `list` and bad input need not wait fo
 DEFAULT_CASE = "seed_stack_plateau"
 LARGEST_FILE = 1_000_000  # bytes; a case file has a few thousand
 #: kind of a file -> the command that computes it
-COMMANDS = {"case": "run", "sweep": "sweep", "ensemble": "ensemble", "site": "assess"}
+COMMANDS = {"case": "run", "sweep": "sweep", "ensemble": "ensemble", "site": "assess", "list": "batch"}
+#: columns of which one makes a file a list of containers
+COLUMNS = {"width_m", "height_m", "depth_m", "mass_kg", "weight_N", "mu_static", "mu_kinetic"}
 #: kind of a file -> keys and tables that make it one
 MARKS = {
     "site": {"site"},
@@ -118,7 +120,7 @@ class Collection:
             raise CaseError(f"{name!r} is a folder; give the {self.kind} file{example}")
         for other in COLLECTIONS:
             if name in other.names:
-                raise CaseError(_other_kind(name, other.kind))
+                raise CaseError(other_kind(name, other.kind))
         name = name if len(name) <= 200 else f"{name[:200]} ..."
         raise CaseError(
             f"no {self.kind} file {name!r} and no shipped {self.kind} of that name{self.hint(Path(name).stem)}"
@@ -176,6 +178,8 @@ def parse_case(origin: Origin) -> dict[str, Any]:
     except RecursionError as error:
         raise CaseError(f"{origin.place}: not a case file: lists or tables nested too deep") from error
     except ValueError as error:  # TOMLDecodeError, or a whole number of thousands of digits
+        if (kind := kind_of_text(origin.text)) and kind != origin.kind:
+            raise CaseError(other_kind(origin.place, kind)) from None
         # the line that is no TOML and the way out, for the slips that people make
         place, lines, slip = re.search(r"line (\d+)", str(error)), origin.text.splitlines(), ""
         if place is not None and int(place[1]) <= len(lines):
@@ -183,22 +187,40 @@ def parse_case(origin: Origin) -> dict[str, Any]:
             advice = (advice for pattern, advice in SLIPS if re.search(pattern, line))
             slip = "".join(f"\n  {words}" for words in (line[:80], *list(advice)[:1]))
         raise CaseError(f"{origin.place}: not a TOML file: {error}{slip}") from error
-    kinds = [kind for kind, marks in MARKS.items() if not marks.isdisjoint(data)]
+    kinds = _kinds(data)
     # An ensemble has axes, as a sweep has; a site file names its container, as a case does.
     more = {"sweep": "ensemble", "case": "site"}.get(origin.kind)
     if kinds and (origin.kind not in kinds or more in kinds):
-        raise CaseError(_other_kind(origin.place, kinds[0]))
+        raise CaseError(other_kind(origin.place, kinds[0]))
     return data
 
 
-def is_site(name_or_path: str | Path) -> bool:
-    """Whether it is a site file, or the name of a shipped one; false also of what cannot be read."""
+def _kinds(data: Mapping[str, Any]) -> list[str]:
+    """Kinds of a file with these keys and tables."""
+    return [kind for kind, marks in MARKS.items() if not marks.isdisjoint(data)]
+
+
+def kind_of_text(text: str) -> str:
+    """The kind of a file with this text, a key of `COMMANDS`; empty of what is none."""
     try:
-        return not MARKS["site"].isdisjoint(parse_case(SITES.find(name_or_path)))
+        return next(iter(_kinds(tomllib.loads(text))), "")
+    except (RecursionError, ValueError):
+        first = text.lstrip().partition("\n")[0]
+        names = (name.strip(' "\r').rpartition(".")[2] for name in re.split("[;,\t]", first))
+        return "" if COLUMNS.isdisjoint(names) else "list"
+
+
+def kind_of(name_or_path: str | Path) -> str:
+    """The kind of a file, or of a shipped one of that name; empty of what is none or cannot be read."""
+    shipped = (collection for collection in COLLECTIONS if str(name_or_path) in collection.names)
+    try:
+        return kind_of_text(next(shipped, CASES).find(name_or_path).text)
     except CaseError:
-        return False
+        return ""
 
 
-def _other_kind(place: str, kind: str) -> str:
-    article = "an" if kind == "ensemble" else "a"
-    return f"{place}: this is {article} {kind} file: python -m fem {COMMANDS[kind]} {place}"
+def other_kind(place: str | Path, kind: str) -> str:
+    """What is said of a file of another kind than is asked for: the command that takes it."""
+    article, case = "an" if kind == "ensemble" else "a", " --case CASE" * (kind == "list")
+    what = "list of containers" if kind == "list" else f"{kind} file"
+    return f"{place}: this is {article} {what}: python -m fem {COMMANDS[kind]} {place}{case}"

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.case import Case, case_hash, load_case
-from fem.case.files import is_site
+from fem.case.files import kind_of
 from fem.case.tables.duration import longest_time
 from fem.case.validation import CaseError
 from fem.cli import console
@@ -159,7 +159,7 @@ def check(
     Args:
         both_sides: Check the side across, too.
     """
-    if case is not None and is_site(case):
+    if case is not None and kind_of(case) == "site":
         if overrides or motion is not None:
             raise CaseError(f"{case}: a site file takes neither --set nor --motion; edit the file")
         files = importlib.import_module("fem.site.request")

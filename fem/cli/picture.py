@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.data_files import split_channel
+from fem.case.files import kind_of, other_kind
 from fem.case.plausible import doubts
 from fem.case.validation import CaseError
 from fem.cli.console import ELSEWHERE_TO, Quiet
@@ -56,6 +57,8 @@ def picture(
         to: The PNG, of a motion also SVG; default: figures/picture_TIME.png of the run, FILE.png.
     """
     path, channel = split_channel(Path(), run)
+    if not path.is_dir() and (kind := kind_of(path)):
+        raise CaseError(other_kind(path, kind))
     if path.is_file():
         if time is not None:
             raise CaseError("--time is for a run, and this is a motion file")

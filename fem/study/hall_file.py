@@ -12,6 +12,7 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, get_args
 
+from fem.case.files import kind_of, other_kind
 from fem.case.overrides import parse_override
 from fem.case.tables.all_tables import TABLES
 from fem.case.validation import CaseError, known_keys, quantity_of
@@ -105,6 +106,8 @@ class HallFile:
 
 def read_hall(path: Path) -> HallFile:
     """Read a list; its rows are read on first use. CaseError for what is no list, or a column that cannot be one."""
+    if (kind := kind_of(path)) not in ("", "list"):
+        raise CaseError(other_kind(path, kind))
     try:
         text = decoded(read_regular(path, LARGEST_FILE))
     except ValueError as error:
