@@ -19,6 +19,7 @@ from importlib import metadata
 from typing import Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Group, MissingArgumentError, Parameter, UnusedCliTokensError
+from cyclopts.exceptions import RepeatArgumentError
 
 from fem.runtime.late_modules import LateFinder
 from fem.runtime.left import left_words
@@ -34,6 +35,9 @@ WORDS = defaultdict(lambda: "another value", float="a number", int="a whole numb
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
 FLAGS = ("--help", "-h", "--version")
+#: options that contradict each other, beside `--NAME` and `--no-NAME`
+CONTRARY = (("--resume", "--force"), ("--quiet", "--verbose"), ("--short", "--full"), ("--json", "--full"))
+SHORT = {"q": "--quiet", "v": "--verbose"}
 #: group -> command -> what it does, and arguments as an example
 GROUPS = {
     "Commands": {
@@ -143,6 +147,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name in [*tokens[:1], *options, *(f"{tokens[0]} {option}" for option in options)]:
         if words := left_words(name):
             return _refuse(f"{name} {words}")
+    letters = "".join(token[1:] for token in tokens[1:] if re.fullmatch("-[a-z]+", token))
+    given = {*options, *(SHORT[letter] for letter in letters if letter in SHORT)}
+    for pair in (*CONTRARY, *((f"--{name[5:]}", name) for name in options if name.startswith("--no-"))):
+        if given.issuperset(pair):
+            return _refuse(f"{' and '.join(pair)} contradict each other; give one of them")
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         near = difflib.get_close_matches(tokens[0], COMMANDS, n=1)
         way_out = f"; did you mean {near[0]!r}?" if near else ""
@@ -186,6 +195,8 @@ def _in_words(error: CycloptsError) -> str:
     """An error in the arguments, without the phrases of the library."""
     if isinstance(error, UnusedCliTokensError):
         return f"too many arguments: {' '.join(map(repr, error.unused_tokens or []))}"
+    if isinstance(error, RepeatArgumentError):
+        return f"{error.token.keyword} is given more than once; give it once"
     if isinstance(error, MissingArgumentError) and error.argument is not None:
         name = error.argument.name
         return f"{name} needs a value" if name.startswith("-") else f"{name} is missing"

@@ -324,7 +324,10 @@ def load_case(
     values = dict(parse_override(text) for text in overrides)
     if motion is not None:
         recorded = {"motion.kind": "table", "motion.file": data_files.as_named_from(source.folder, motion)}
-        values = recorded | {key: value for key, value in values.items() if key not in recorded}
+        for key in recorded:
+            if values.get(key, recorded[key]) != recorded[key]:
+                raise CaseError(f"--motion and --set {key} contradict each other; give one of them")
+        values = recorded | values
         overrides = (*(f"{key}={value}" for key, value in recorded.items()), *overrides)
     if allow_baseline:
         kinds = kinds_of(with_overrides(parse_case(source), values))

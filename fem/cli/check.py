@@ -66,8 +66,6 @@ def run(
         full: Print the whole summary.
         verbose: Print the plan before the run.
     """
-    if quiet and verbose:
-        raise CaseError("-q and -v contradict each other; give one of them")
     loaded = load_case(
         case, overrides, motion=motion, allow_outside=allow_outside, allow_baseline=allow_baseline
     )

@@ -82,6 +82,10 @@ def picture(
         return
     if not path.exists():
         raise CaseError(f"{run}: no such file or folder; give the folder of a run, or a motion file")
+    if (unit, sample_interval, quantity, baseline) != (None, None, "acceleration", "none"):
+        raise CaseError(
+            "--unit, --sample-interval, --quantity and --baseline are for a motion file, and this is a run"
+        )
     opened = open_run(Path(run))
     _ = opened.fields  # raises where there are no frames to draw
     require_writable(to.parent if to else Path(run), ELSEWHERE_TO)

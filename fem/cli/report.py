@@ -61,8 +61,6 @@ def report(
         raise FolderError(
             f"{folder}: --short is for the report of a run, of a verification at a site, or of a hall"
         )
-    if short and full:
-        raise FolderError("--short and --full contradict each other; give one of them")
     short = short or (pdf and has_short and not full)
     if pdf and to is not None and to.suffix.lower() == ".pdf":
         to = to.with_suffix(".html")  # the PDF lies beside the page
