@@ -152,6 +152,10 @@ def _compute_into(
     files, result = RunFiles(place.path), begun(model, request)
     start = read_start(files, model, request) if place.resuming else Start()
     watch.before = start.spent
+    if place.earlier is not None and not place.resuming and files.checkpoint.exists():
+        reporter.warning(
+            f"{place.path} held this run, unfinished; it begins again at t = 0 s: --resume would have continued it"
+        )
     place.begin(result.to_json(), texts, keep=bool(start.arrays))
     try:
         copy_data_files(model.case, place.path)

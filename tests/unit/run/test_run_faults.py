@@ -90,6 +90,8 @@ def test_an_interrupted_run_is_readable_names_the_way_on_and_reaches_the_same_bi
     require_readable(folder)
     assert not (folder / LOCK_NAME).exists() and not (folder / OWNER_NAME).exists()
     require_resumed(folder, whole, *options)
+    begun_again = "begins again at t = 0 s: --resume would have continued it" in capsys.readouterr().err
+    assert begun_again == (not options)
 
 
 @pytest.mark.parametrize(
