@@ -4,6 +4,7 @@ import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter, Token
@@ -112,5 +113,8 @@ def print_result(result: "StudyResult", kind: ResultKind, folder: Path, page: st
     if as_json:
         print_json(read_text(folder / kind.mark))
     else:
-        say("\n".join(filter(None, (page, result.no_answer_yet or result.answer))))
+        noted = "\n".join(
+            fill(f"  note: {words}", WIDTH, subsequent_indent="    ") for words in result.warnings
+        )
+        say("\n".join(filter(None, (page, noted, result.no_answer_yet or result.answer))))
     return EXIT_CODES[result.status]

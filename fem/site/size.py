@@ -21,6 +21,8 @@ from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
 from fem.html.page import text_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
+from fem.results.run_result import MotionResult
+from fem.run.described import doubts
 from fem.run.expected import expected_words
 from fem.run.sureness import least_width, values_to_try
 from fem.runtime.identity import command_line
@@ -362,6 +364,7 @@ def run_size(
     ends = ("--from", f"{axis.values[0]:g}", "--to", f"{axis.values[-1]:g}", "--count", str(len(axis.values)))
     command = command_line("size", request.origin.place, "--over", axis.key, *ends)
     begun = size_asked(axis, followers(request, axis.key), command)
+    begun = replace(begun, warnings=doubts(MotionResult(), at(request, axis, axis.values[-1]).container))
     study = Study(
         kind=SIZE,
         request=hash_of([site_hash(request, ground), repr(axis)]),

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from itertools import islice, product
 from typing import Annotated, Any, Literal, NamedTuple
@@ -23,6 +23,8 @@ from fem.case.tables.table import CaseTable
 from fem.case.tables.unknown_inputs import INPUTS, ranges_of
 from fem.case.uncertainty import InputChange, as_changed, drawn_values
 from fem.case.validation import CaseError
+from fem.results.run_result import MotionResult
+from fem.run.described import doubts
 from fem.study.axes import MOTION_FILE, Axis, point_of, set_axis, shape_of, with_following
 from fem.study.containers import penalty_of
 from fem.study.derived import FREE, Expression, number_of, with_derived
@@ -311,7 +313,18 @@ class Design:
             "derived": {key: expression.text for key, expression in self.derived.items()},
             "held": self.held,
             "limit_slip_m": self.limit_slip_m,
+            "warnings": self.warnings,
         }
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a run tells of a mass centre that stays behind: of the last corner where one does, else of the base."""
+        before = len(self.base.overrides)
+        for case in reversed(self.cases):  # a mass centre of [set] stays where an axis moves the height
+            own = replace(case.origin_with({}), overrides=case.overrides[before:])
+            if said := doubts(MotionResult(), case.from_origin(own)):
+                return said
+        return doubts(MotionResult(), self.base)
 
     def corners(
         self, *, listed: bool = False, drawn: Sequence[tuple[Any, ...]] | None = None

@@ -50,10 +50,11 @@ class StudyOptions(TypedDict, total=False):
 class StudyResult(JsonBlock):
     """What the marking file of every study holds."""
 
-    written_where_given = frozenset({"missing"})
+    written_where_given = frozenset({"missing", "warnings"})
     status: str = "running"  #: running | interrupted | failed | completed
     answer: str | None = None  #: in one sentence; None until the study is finished, or where it has none
     missing: str | None = None  #: what an interrupted study has not come to, in words
+    warnings: tuple[str, ...] = ()  #: about its cases, in the words of a run
     program: str = field(default_factory=lambda: str(program_of_results()["program"]))
     versions: dict[str, str] = field(default_factory=lambda: dict(program_of_results()["versions"]))
 

@@ -8,11 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_sweep import sweep_in
 
+from fem.__main__ import main
 from fem.case.case import case_hash
 from fem.case.files import CASES, SWEEPS
 from fem.case.validation import CaseError
 from fem.study.derived import ExpressionError, parse_expression
 from fem.study.file import load_ensemble, load_sweep
+from fem.study.sweep_table import open_sweep
 
 HEAD = 'case = "seed_stack_plateau"\n[set]\n"solver.model" = "rigid"\n'
 FREQUENCY = '"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 3 }\n'
@@ -148,3 +150,18 @@ def test_a_doubt_of_python_is_told_in_words_and_not_printed(text):
         warnings.simplefilter("always")
         parse_expression(text)
     assert not caught
+
+
+def test_a_mass_centre_that_stays_where_the_height_is_varied_is_told_as_by_a_run(tmp_path, capsys):
+    head = 'case = "seed_box"\n[set]\n"solver.model" = "rigid"\n"solver.duration_s" = 0.1\n'
+    axis = '[axes]\n"container.height_m" = [1.0, 2.0]\n'
+    path = tmp_path / "tall.toml"
+    path.write_text(head + '"container.centroid_m" = 0.5\n' + axis, encoding="utf-8")
+    assert main(["sweep", str(path), "--out", str(tmp_path / "out"), "-q"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    main(["check", "seed_box", "--set", "container.height_m=2"])
+    own = sweep_in(tmp_path, head + axis).warnings
+    assert open_sweep(tmp_path / "out").info.warnings == own != ()
+    assert own[0] in told and own[0] in " ".join(capsys.readouterr().out.split())
+    moved = '[derived]\n"container.centroid_m" = "0.5 * container.height_m"\n'
+    assert sweep_in(tmp_path, head + axis + moved).warnings == ()
