@@ -93,7 +93,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         hash=info.sweep_hash,
         scripts=["map.js"],
         data={"sweep": data},
-        sentence=answer.sentence if answer else None,
+        sentence=answer.sentence if answer else info.answer,
         count=f"{computed} of {info.cells} cells{_unfinished(info)}: {counted}.",
         figures=_figures(folder, info.maps, "sweep"),
         deciding=sorted((info.decided_by or {}).items(), key=lambda pair: -pair[1]),

@@ -4,6 +4,7 @@ Along one axis the values are taken from the safe side: a strength from below, a
 about what was tried: nothing is known between the values.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -298,6 +299,49 @@ def sweep_answer(table: SweepTable, folder: Path) -> StudyAnswer[Answer] | None:
         others=tuple(kept),
         rows=tuple(rows),
     )
+
+
+def fallen_cells_in_words(table: SweepTable) -> str | None:
+    """Which cells of a sweep fall, of one that has no axis of an answer; None where none or all do, or one is missing.
+
+    Of each axis the values at which any cell falls, unless they are all, and the other values of those at its end.
+    """
+    limit, kinds = table.info.limit_slip_m, [*map(ending_of, table["status"], table["outcome"])]
+    slips = table.columns.get(SLIPPED, np.full(len(kinds), np.nan))
+    slid = slips > (math.inf if limit is None else limit)
+    points = [
+        point_of(table.axes, cell) for cell, kind in enumerate(kinds) if kind in NOT_STANDING or slid[cell]
+    ]
+    if len(points) in (0, len(kinds)) or not np.all(table["status"] != ""):
+        return None
+
+    def listed(axis: Axis, some: Sequence[Mapping[str, Any]]) -> str:
+        """The values of an axis at some points; empty for all of them."""
+        known = {point[axis.key] for point in some}
+        if known == {*axis.values}:
+            return ""
+        if axis.is_numeric:
+            return ranges_in_words([*_ranges((value, value in known) for value in axis.numbers)], axis)
+        return in_words(axis, [value for value in axis.values if value in known])
+
+    parts = []
+    for axis in (axis for axis in table.axes if listed(axis, points)):
+        words, known = f"some at {listed(axis, points)} alone", {point[axis.key] for point in points}
+        changes = [pair for pair in pairwise(axis.values) if (pair[0] in known) != (pair[1] in known)]
+        if axis.is_numeric and len(changes) == 1:
+            end = [point for point in points if point[axis.key] in changes[0]]
+            others = [(axis_name(other), listed(other, end)) for other in table.axes if other is not axis]
+            there = ", ".join(f"{name} {values}" for name, values in others if values)
+            before, behind = ("some", "none") if changes[0][0] in known else ("none", "some")
+            low, high = (in_words(axis, [value], 4) for value in changes[0])
+            words = (
+                f"{before} up to {low}, {behind} from {high} on{f' (there with {there})' if there else ''}"
+            )
+        parts.append(f"{axis_name(axis)}: {words}")
+    fell = falling_in_words(limit, past=True)
+    if any(kind == Ending.INVALID for kind in kinds):
+        fell += " or destroyed a corner"
+    return f"{len(points)} of {len(kinds)} cells {fell}: {'; '.join(parts) or 'some at every value of each axis'}"
 
 
 HALF = 0.5

@@ -23,7 +23,7 @@ from fem.results.kinds import SWEEP
 from fem.run.expected import expected_s, expected_words
 from fem.runtime.threads import cores
 from fem.runtime.user_files import read_own
-from fem.study.answers import answers_csv, sweep_answer
+from fem.study.answers import answers_csv, fallen_cells_in_words, sweep_answer
 from fem.study.design import Item, Sweep
 from fem.study.driver import COMPLETED, FAILED, Study, StudyOptions, hash_of, run_study
 from fem.study.maps import draw_maps
@@ -192,6 +192,6 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     open_table = open_sweep(place.path)
     if answer := sweep_answer(open_table, place.path):
         place.write(ANSWERS, answers_csv(answer))
-        result = replace(result, answer=answer.sentence)
+    result = replace(result, answer=answer.sentence if answer else fallen_cells_in_words(open_table))
     maps = tuple(draw_maps(open_table, place.path / "maps", sweep.maps))
     return replace(result, maps=maps, wall_s=time.perf_counter() - began)

@@ -13,17 +13,26 @@ from fem.html.page import _environment
 from fem.response.lasting import PointRecord, PointRow, ResponseResult, result_of
 from fem.response.request import ResponseRequest
 from fem.results.outcome import Ending
-from fem.study.answers import Trial, answer_of, ensemble_answer, is_rising, sentence_of
+from fem.study.answers import (
+    Trial,
+    answer_of,
+    ensemble_answer,
+    fallen_cells_in_words,
+    is_rising,
+    sentence_of,
+)
 from fem.study.axes import Axis, AxisError, in_words, read_axis  # noqa: F401 - lines of the text use them
 from fem.study.derived import ExpressionError, parse_expression  # noqa: F401
 from fem.study.file import load_ensemble, load_sweep
 from fem.study.fragility import EnsembleResult
 from fem.study.hall_file import read_hall
+from fem.study.sweep_table import SweepResult, SweepTable
 
 G = 9.80665
 PEAK = Axis(key="motion.peak_acceleration_m_s2", values=(0.2 * G, 0.4 * G, 0.6 * G), unit="m/s2")
 WIDTH = Axis(key="container.width_m", values=(0.8, 1.0, 1.2), unit="m")
 MU = Axis(key="contact.mu_static", values=(0.2, 0.3, 0.4))
+JOINTS = Axis(key="container.joints", values=("bolted", "loose"))
 ENSEMBLE = Path(__file__).parent / "files" / "ensemble.toml"
 SWEEP = 'case = "seed_stack_plateau"\n[set]\n"solver.model" = "rigid"\n'
 #: a sweep over three frequencies
@@ -42,6 +51,17 @@ def line(axis, kinds, slip=None, unsure="", limit=None):
     ]
     rising = is_rising(axis, trials)
     return sentence_of(answer_of(trials, rising=rising, limit_slip=limit), axis, rising=rising)
+
+
+def cells(axes, kinds, slip=0.0, limit=None):
+    """The cells of a sweep without an axis of an answer, the last axis the fastest."""
+    words = {"s": "rest", "o": "overturned", "i": "invalid", "f": ""}
+    outcome = [words[kind] for kind in kinds.replace(" ", "")]
+    status = ["completed" if word else "failed" for word in outcome]
+    columns = {"status": np.array(status), "outcome": np.array(outcome)}
+    columns["max_slip_m"] = np.where(columns["outcome"] == "rest", slip, 0.0)
+    info = SweepResult(sweep_hash="", axes=axes, limit_slip_m=limit)
+    return str(fallen_cells_in_words(SweepTable(info=info, columns=columns)))
 
 
 def over(axis, *shares, slips=(), mu=None):
