@@ -42,6 +42,10 @@ HOSTILE = "x\"><img src=x onerror='window.done=1'>\u2028</script><script>window.
 LIST = f"name,tag,width_m,note\n{HOSTILE[3:]},{HOSTILE[3:]},1.5,<b>\n"
 FREE = ("title", "case", "name", "tag")  #: keys of texts that may be anything
 CONTROLS = ("button", "slider", "combobox", "checkbox", "textbox", "application", "link", "image", "region")
+WIDER = (  #: than the page: tables that scroll within themselves
+    "[...document.querySelectorAll('.scroll')].filter((one) => one.scrollWidth > one.clientWidth + 1)"
+    ".map((one) => one.ariaLabel)"
+)
 CLOCK = "parseFloat(document.getElementById('now-clock').textContent)"
 
 
@@ -106,6 +110,33 @@ def test_every_report_loads_nothing_and_can_be_read_by_everybody_on_a_desk_and_a
         assert browser.evaluate("document.documentElement.scrollWidth") <= 390
         tables = "[...document.querySelectorAll('table')]"
         assert browser.evaluate(f"{tables}.filter((one) => !one.closest('.scroll')).length") == 0
+        browser.window(1200, 900)
+        assert browser.evaluate(WIDER) == []
+    finally:
+        browser.window(1280, 900)
+
+
+def test_a_list_of_long_names_fits_the_page_of_a_desk(browser, tmp_path):
+    text, records = (
+        "name;count;tag;width_m\nISO container of the supplier behind the gallery;2;hall 3 north;0.5\n",
+        [],
+    )
+    (tmp_path / "list.csv").write_text(text, encoding="utf-8")
+    for station in "12":
+        records.append(str(tmp_path / f"record_of_station_{station}_north_component.csv"))
+        Path(records[-1]).write_text(
+            f"time_s,acceleration_m_s2\n0,0\n0.1,{station}\n0.2,-3\n0.3,0\n", encoding="utf-8"
+        )
+    base = load_case(
+        "seed_box", ("solver.model=rigid", "solver.duration_s=1", "motion.unit=m/s2"), motion=records[0]
+    )
+    run_hall(read_hall(tmp_path / "list.csv"), base, tmp_path / "out", motions=records, checks="none")
+    (tmp_path / "hall.html").write_text(hall_report(tmp_path / "out"), encoding="utf-8")
+    browser.window(1200, 900)
+    try:
+        browser.open(tmp_path / "hall.html")
+        assert browser.evaluate("document.querySelectorAll('[aria-label=containers] thead th').length") > 8
+        assert browser.evaluate(WIDER) == []
     finally:
         browser.window(1280, 900)
 
