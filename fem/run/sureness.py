@@ -220,6 +220,14 @@ def values_to_try(
     ]
 
 
+def rounds_left(known: Mapping[float, str], *, resolution: float, inner: int) -> float:
+    """How often `values_to_try` will give values, roughly: by the widest bracket."""
+    wide = (
+        (one.high - one.low) / (resolution * max(abs(one.low), abs(one.high))) for one in changes_of(known)
+    )
+    return max(0.0, math.log(max(wide, default=1.0)) / math.log(inner + 1))
+
+
 def changes_of(known: Mapping[float, str]) -> list[Change]:
     """Neighbouring values of different outcome."""
     values = sorted(known)

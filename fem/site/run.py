@@ -74,7 +74,6 @@ DECIDING = "the deciding runs with their bands"
 CONTAINER = "container.toml"
 RECORDS = "records"  #: folder in the results of the records that the site file names
 MOST_COPIED = 20_000_000  #: of a record [bytes]; a larger one stays where it is
-LOOSE = 0.55  #: cost of a run with the energy tolerance of draws, over one of the set
 TIMES_THE_SET = 20  #: runs of all stages over those of the set
 
 
@@ -179,26 +178,28 @@ def answered(
     scans = not (stages.quick or varied)
     names = ["the set", "its repetitions", *[FURTHER_ONES] * stages.has_further]
     names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
-    told = NamedStages([] if varied else names, runner.reporter)  # of a value of `size` none is named
-
+    told = NamedStages(names, runner.reporter)
     begun: list[str] = []  #: the stage whose runs follow
+    left = 0  #: runs of the set at other factors that may still be asked for
 
     def batches() -> Iterator[Sequence[RunKey]]:
+        nonlocal left
         for name, keys in zip(names, stages.of_the_answer(runner), strict=False):
             begun[:] = [name]
             yield keys
-            told.end()
             if varied and now().answer == NOT_FULFILLED:
                 return
         if scans:
             begun.clear()
-            told.begin(OTHER_FACTORS, stages.most_scanned, up_to=True, weight=LOOSE)
+            left = stages.most_scanned
+            told.begin(OTHER_FACTORS, left, up_to=True)
             yield from stages.of_the_margin()
 
     def begin(count: int) -> None:
+        nonlocal left
         if begun:
-            name = begun.pop()
-            told.begin(name, count, weight=LOOSE if name == FURTHER_ONES else 1.0)
+            told.begin(begun.pop(), count)
+        left = max(left - count, 0)
 
     def note(line: str) -> None:
         row = row_of(varied | COLUMNS, line)
@@ -218,6 +219,7 @@ def answered(
             of=f"{line_of([value])}," if varied else "",
             note=note,
             told=begin,
+            more=lambda count: left,
         ).run(runner, batches())
         if not (runner.stop() or left_out) and not (varied and now().answer != FULFILLED):
             runs, own = stages.in_order(), stages.found(stages.of_set())

@@ -24,7 +24,7 @@ from fem.results.kinds import SIZE
 from fem.results.run_result import MotionResult
 from fem.run.described import doubts
 from fem.run.expected import expected_words
-from fem.run.sureness import least_width, values_to_try
+from fem.run.sureness import least_width, rounds_left, values_to_try
 from fem.runtime.identity import command_line
 from fem.runtime.own_files import remove_tree
 from fem.seismic.ground_motion import GroundMotion
@@ -224,10 +224,12 @@ def next_values(axis: SizeAxis, answers: Mapping[float, SiteAnswer]) -> list[flo
     missing = [value for value in axis.values if value not in answers]
     if missing or axis.whole:
         return missing
-    outcomes = {value: str(bool(answer.fulfilled)) for value, answer in answers.items()}
-    return values_to_try(
-        outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
-    )
+    least = least_width(axis.values, RESOLUTION)
+    return values_to_try(_fulfilled(answers), resolution=RESOLUTION, inner=INNER, least=least)
+
+
+def _fulfilled(answers: Mapping[float, SiteAnswer]) -> dict[float, str]:
+    return {value: str(bool(answer.fulfilled)) for value, answer in answers.items()}
 
 
 def stretches(said: Mapping[float, str]) -> list[tuple[str, float, float]]:
@@ -389,6 +391,7 @@ def _compute(
     began, working = time.perf_counter(), place.path / WORKING
     tried: dict[float, Stages] = {}
     answers: dict[float, SiteAnswer] = {}
+    took: list[float] = []  #: each value that is decided [s]
     made: dict[Path, dict[str, GroundMotion]] = {}
     copy_files(request, place.path)
     try:
@@ -403,8 +406,13 @@ def _compute(
             seconds = sum(
                 load * (one.seconds + one.deciding_seconds) for load, one in zip(loads, each, strict=True)
             )
+            if took:  # as long as those that took longest: the next ones are near the boundary
+                rounds = rounds_left(_fulfilled(answers), resolution=RESOLUTION, inner=INNER)
+                seconds = len(values) * max(rounds, 1.0) * float(np.mean(sorted(took)[-2:]))
+                what += ", then values between them" * (rounds > 1.0)
             runner.reporter.message(f"{what}: {expected_words(seconds, runner.jobs)}")
             for value in values:
+                since = time.perf_counter()
                 runner.reporter.message(so_far(axis, answers, value))
                 stages = tried[value]
                 answer = answered(stages, set_of(stages), runner, place.path / RUNS, value)
@@ -412,6 +420,7 @@ def _compute(
                     left = f"{len(answers)} values are decided, {len(tried) - len(answers)} are not"
                     return replace(begun, status=INTERRUPTED, missing=left)
                 answers[value] = answer
+                took.append(time.perf_counter() - since)
     finally:
         remove_tree(working)
     place.check()

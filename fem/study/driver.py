@@ -187,6 +187,7 @@ class LoggedRuns(Generic[ItemT]):
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
     note: Callable[[str], None] = lambda line: None  #: called with every line of the log, old and new
     told: Callable[[int], None] = lambda count: None  #: called with the size of every batch before its runs
+    more: Callable[[int], float] = lambda count: 0.0  #: how many are expected to follow a batch of this size
     #: of the log, by what tells apart
     lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)
 
@@ -230,7 +231,9 @@ class LoggedRuns(Generic[ItemT]):
                     break
                 self.told(len(items))
                 asked = self.what, items, self.make, self.model_of, self.work
-                for chunk, rows in runner.rows(*asked, takes_long=self.work is not None):
+                for chunk, rows in runner.rows(
+                    *asked, takes_long=self.work is not None, more=self.more(len(items))
+                ):
                     keys, logged = [tuple(self.key(item)) for item in chunk], map(self.logged, rows)
                     lines = [
                         line_of((*key, *(row[name] for name in [*self.columns][len(key) :])))

@@ -6,12 +6,14 @@ status "failed" and the reason; it never has an outcome.
 
 import time
 import warnings
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
-from typing import Any, Literal, TypedDict, Unpack, overload
+from typing import Any, Generic, Literal, TypedDict, Unpack, overload
+
+import numpy as np
 
 from fem.case.case import Case
 from fem.model.container import Container
@@ -24,7 +26,7 @@ from fem.results.figures import BOXES, SCALARS, BoxResult
 from fem.results.level import in_a_word
 from fem.results.run_result import Verdict
 from fem.run.compute import Run, WantedChecks, compute_on, require_case
-from fem.run.expected import say_expected
+from fem.run.expected import OF_A_SECOND, say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import verdict_of
@@ -33,7 +35,16 @@ from fem.runtime.signals import stop_requested
 from fem.runtime.threads import cores
 from fem.study.containers import ContainerCache, container_key
 from fem.study.table import Columns
-from fem.study.workers import IN_THREADS, FoundT, ItemT, LocalWorkers, WorkersOf, hand_out, never, unguarded
+from fem.study.workers import (
+    IN_THREADS,
+    FoundT,
+    ItemT,
+    LocalWorkers,
+    WorkersOf,
+    hand_out,
+    never,
+    unguarded,
+)
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
@@ -42,7 +53,9 @@ CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 MANY_WORKERS, LEAST_CHUNKS = 64, 4
 
 AT_HAND = 8  #: equilibria of a chunk that are kept: its cases may differ by turns in friction and weight
-MEASURED_S = 2.0  #: in which it is found how long some work takes
+MEASURED_S = 4.0  #: in which it is found how long some work takes
+#: chunks from all over the work that are handed out first, where it has more than so many
+SAMPLED, MANY_CHUNKS = 8, 24
 TOLD_S = 5.0  #: work that has taken so long ends with a line of what was done
 
 _CONTAINERS = ContainerCache()
@@ -72,49 +85,64 @@ class Runner:
         work: ChunkWork | None = None,
         *,
         takes_long: bool = False,
+        more: float = 0.0,
     ) -> Generator[tuple[list[ItemT], list[Row]], None, None]:
         """Run one case for each item; yields items and their rows as they are ready, in any order.
 
         Items stand in an order in which those of one container are neighbours. `make` is picklable; it gives the case
         of an item, or for `found` the item without its number. Other `work` that takes long is handed out one by one,
-        and gives no row where it was stopped.
+        and gives no row where it was stopped. `more` of them are expected to follow, for the time left.
         """
         by_model: dict[str, list[ItemT]] = {}
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
         total, done, failed, began = sum(map(len, by_model.values())), 0, 0, time.perf_counter()
-        first: tuple[int, float] | None = None  # how many were done when, after whatever was compiled [s]
-        foretold = False
+        first: float | None = None  # when some were done, after whatever was compiled [s]
+        worked, foretold, group = 0.0, False, _Group[ItemT]([], 1)  # what those after it cost [s]
+        follow = " with those that may follow" * (more > 0.0)
+
+        def left() -> float | None:
+            """Wall time of those that are not done, and of those that are expected to follow [s]."""
+            if first is None or not worked:
+                return None
+            counts = [more, *(len(by_model[one]) * OF_A_SECOND[one] / OF_A_SECOND[model] for one in models)]
+            rest = group.left + sum(counts) * group.mean
+            return rest * (time.perf_counter() - first) / worked
 
         def told() -> str:
             """How much is done, how fast, and the time left."""
             elapsed, lost = time.perf_counter() - began, f", {failed} failed" if failed else ""
-            rate = done / elapsed if elapsed > 0.0 else 0.0
+            rate, seconds = done / elapsed if elapsed > 0.0 else 0.0, left() if done < total else 0.0
             if done == total:
                 return f"{total} {what} in {clock_time(elapsed)}{lost}"
-            left = f"{clock_time((total - done) / rate)} left" if rate > 0.0 else "time left unknown"
-            return f"{done} of {total} {what}, {rate:.3g} per s, {left}{lost}"
+            words = "time left unknown" if seconds is None else f"{clock_time(seconds)} left"
+            return f"{done} of {total} {what}, {rate:.3g} per s, {words}{follow}{lost}"
 
         self.reporter.start(0.0)
+        models = sorted(by_model, key=[*CASES_AT_A_TIME].index)
         try:
-            for model, group in sorted(by_model.items(), key=lambda pair: [*CASES_AT_A_TIME].index(pair[0])):
-                pools, size, finish = self.workers_of(model, len(group)), 1, False
+            while models:
+                model = models.pop(0)
+                own = by_model[model]
+                pools, size, finish = self.workers_of(model, len(own)), 1, False
                 if model != "full" and not takes_long:  # one of these may take an hour
                     usual, workers, finish = CASES_AT_A_TIME[model], sum(pool.count for pool in pools), True
-                    size = min(usual * workers // MANY_WORKERS, len(group) // (LEAST_CHUNKS * workers))
+                    size = min(usual * workers // MANY_WORKERS, len(own) // (LEAST_CHUNKS * workers))
                     size = max(usual, size)
-                own: dict[str, Any] = {"at_a_time": size, "stop": self.stop, "finish": finish}
-                for chunk, rows in hand_out(group, partial(work or run_chunk, make), pools, **own):
+                group = _Group(own, size)
+                options: dict[str, Any] = {"at_a_time": size, "stop": self.stop, "finish": finish}
+                for chunk, rows in hand_out(
+                    group.order(), partial(work or run_chunk, make), pools, **options
+                ):
                     yield chunk[: len(rows)], rows
                     done, failed = done + len(rows), failed + sum(row["status"] == "failed" for row in rows)
+                    cost, now = group.note(chunk, rows), time.perf_counter()
+                    worked, first = (worked + cost, first) if first else (0.0, now if done else None)
                     if done < total:
                         self.reporter.tell(told)
-                        now = time.perf_counter()
-                        first = first or ((done, now) if done else None)
-                        if first and not foretold and now > first[1] + MEASURED_S and done > first[0]:
-                            foretold, rest = True, total - done  # said once, at the rate of the first seconds
-                            seconds = rest * (now - first[1]) / (done - first[0])
-                            say_expected(self.reporter, f"{rest} more {what}", seconds)
+                        if first and not foretold and now > first + MEASURED_S and (seconds := left()):
+                            foretold = True  # said once, by what the first of all over the group took
+                            say_expected(self.reporter, f"{total - done} more {what}{follow}", seconds)
         finally:
             self.reporter.finish()
             if total and done == total and time.perf_counter() - began > TOLD_S:
@@ -154,39 +182,69 @@ class Runner:
                     yield number, row["found"]
 
 
+@dataclass(eq=False)
+class _Group(Generic[ItemT]):
+    """Items of one model, in chunks, and what those that are done cost.
+
+    A few from all over the group are handed out first: neighbours are alike, and the last may take ten times as long as
+    the first.
+    """
+
+    items: list[ItemT]
+    size: int  #: of a chunk
+
+    def __post_init__(self) -> None:
+        starts = range(0, len(self.items), self.size)
+        self._places = {id(self.items[start]): k for k, start in enumerate(starts)}
+        self._counts = np.array([min(self.size, len(self.items) - start) for start in starts])
+        self._costs = np.full(len(starts), np.nan)  #: of an item, by chunk; nan: not done [s]
+
+    def order(self) -> Iterator[ItemT]:
+        """The items in the order in which they are handed out."""
+        whole = len(self.items) // self.size
+        early = range(0, whole, whole // SAMPLED) if whole > MANY_CHUNKS else range(0)
+        for k in (*early, *(k for k in range(len(self._costs)) if k not in early)):
+            yield from self.items[k * self.size : (k + 1) * self.size]
+
+    def note(self, chunk: Sequence[ItemT], rows: Sequence[Row]) -> float:
+        """Note what a chunk cost, without what was compiled in it; returns it [s]. Without times it is one an item."""
+        if not rows:
+            return 0.0
+        cost = float(np.median([row.get("wall_s", 1.0) for row in rows]))
+        self._costs[self._places[id(chunk[0])]] = cost
+        return cost * len(rows)
+
+    @property
+    def mean(self) -> float:
+        """Cost of an item that is done [s]."""
+        return float(np.nanmean(self._costs))
+
+    @property
+    def left(self) -> float:
+        """Cost of those that are not done, as their neighbours have it [s]."""
+        done, places = np.isfinite(self._costs), np.arange(len(self._costs))
+        if not done.any():
+            return 0.0
+        return float(self._counts[~done] @ np.interp(places[~done], places[done], self._costs[done]))
+
+
 @dataclass
 class NamedStages:
-    """Names the stages of a study as they begin: their runs, and how long these take at the rate of those before."""
+    """Names the stages of a study with their runs as they begin; how long these take is measured by the runner."""
 
     names: Sequence[str]
     reporter: Reporter
-    runs: float = 0.0  #: that were announced, by their weights
     last: str = ""  #: stage
-    spent: float = 0.0  #: on runs [s]
-    since: float | None = None  #: when the runs that are computed began [s]
 
-    def begin(
-        self, name: str, runs: int, *, up_to: bool = False, weight: float = 1.0, seconds: float = 0.0
-    ) -> None:
-        """A stage of some runs, or of more of them, begins; `up_to`: it may need fewer.
-
-        `weight`: of one of them, over those before; `seconds`: that they take, where these say nothing of it.
-        """
-        self.end()
+    def begin(self, name: str, runs: int, *, up_to: bool = False, seconds: float = 0.0) -> None:
+        """A stage of some runs, or of more of them, begins; `up_to`: it may need fewer; `seconds`: that they take."""
         if not runs or len(self.names) < 2:
             return
         words = f"{'up to ' * up_to}{runs} {'more ' * (name == self.last)}runs"
         if seconds:
             words += f", roughly {clock_time(seconds)}"
-        elif self.runs:
-            words += f", {clock_time(runs * weight * self.spent / self.runs)} at the rate so far"
         self.reporter.message(f"stage {self.names.index(name) + 1} of {len(self.names)}: {name}, {words}")
-        self.runs, self.last, self.since = self.runs + runs * weight, name, time.perf_counter()
-
-    def end(self) -> None:
-        """The runs that were announced are there."""
-        if self.since is not None:
-            self.spent, self.since = self.spent + time.perf_counter() - self.since, None
+        self.last = name
 
 
 def _work_on(

@@ -36,6 +36,7 @@ from fem.run.sureness import (
     difference,
     how_sure,
     least_width,
+    rounds_left,
     values_to_try,
 )
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
@@ -48,6 +49,7 @@ from fem.study.table import Columns, row_of
 from mesh.container import ContainerMesh
 
 COPIES, BETWEEN = "perturbed copies", "cases between cells"  #: stages of a sweep, behind its cells
+FOLLOWING = 0.9  #: copies around those that turn an outcome over these, as a rule
 REMEMBERED = 4096  #: cells of which the copies are remembered
 SHARE_OF_DRAWS = 0.25  #: draws of a cell over those of the band of a run
 DECIDED = (Ending.STANDING, Ending.OVERTURNED)
@@ -260,6 +262,7 @@ class Copies:
             return item.cell, item.draw, " ".join(changed)
 
         own = {"what": COPIES, "columns": COLUMNS, "key": key, "ids": 2, "note": self._note}
+        own["more"] = lambda count: FOLLOWING * count
         log = self._sweep.runs(**own, path=path, told=told)
         log.run(runner, self._missing())
         return log.table()
@@ -397,8 +400,15 @@ def refine(
             for value in values_to_try(lines[item.cell], **width)
         ]
 
+    def more(count: int) -> float:
+        """Runs that follow `count`, as many a round."""
+        rounds = (
+            rounds_left(line, resolution=wanted.resolution, inner=wanted.inner) for line in lines.values()
+        )
+        return count * max(0.0, max(rounds) - 1.0)
+
     own = {"what": BETWEEN, "columns": TRIED_COLUMNS, "key": lambda item: (item.cell, item.point[along])}
-    sweep.runs(**own, path=path, told=told, ids=2, note=note).run(runner, iter(between_cells, []))
+    sweep.runs(**own, more=more, path=path, told=told, ids=2, note=note).run(runner, iter(between_cells, []))
     return [
         sweep.point(first) | {key: getattr(change, key) for key in CHANGES}
         for first in sorted(lines)

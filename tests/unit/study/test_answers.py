@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from study_words import KINDS, MU, PEAK, WIDTH, G, ensemble_of, over
 
-from fem.run.sureness import changes_of, least_width, values_to_try
+from fem.run.sureness import changes_of, least_width, rounds_left, values_to_try
 from fem.study.answers import Answer, Trial, answer_axis, answer_of, answers_csv, sweep_answer
 from fem.study.axes import Axis
 from fem.study.sweep_table import BAND, FOUND, open_sweep
@@ -129,6 +129,15 @@ def test_every_change_is_closed_in_on():
     for change, exact in zip(changes, (1.3, 2.2, 4.61), strict=True):
         assert change.low <= exact <= change.high
         assert change.high - change.low <= 1e-3 * change.high
+
+
+def test_the_rounds_that_are_left_are_foretold():
+    known, wanted, rounds = {1.0: "standing", 2.0: "overturned"}, {"resolution": 1e-3, "inner": 3}, 0
+    foretold = rounds_left(known, **wanted)
+    while tried := values_to_try(known, **wanted):
+        known |= {value: "overturned" if value > 1.2 else "standing" for value in tried}
+        rounds += 1
+    assert rounds == pytest.approx(foretold, abs=1.0)
 
 
 def test_an_island_inside_a_bracket_is_kept():

@@ -1,6 +1,7 @@
 """Many cases on all cores, in processes, in memory, on a cluster: each is the run alone, whatever runs beside it."""
 
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -8,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 from textwrap import dedent
+from types import SimpleNamespace
 
 import pytest
 from case_rows import run_cases
@@ -25,10 +27,12 @@ from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.run.verdict import verdict_of
+from fem.runtime.progress import Reporter
 from fem.study.containers import ContainerCache, container_key
 from fem.study.design import CaseMaker
 from fem.study.workers import LocalWorkers, WorkersLostError, hand_out
 
+UNITS = {"s": 1, "min": 60, "h": 3600}
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]
 CHANGES = (
     {"solver.model": "rigid"},
@@ -289,3 +293,30 @@ def test_a_scheduler_that_does_not_answer_is_reported_within_seconds(tmp_path, m
     assert "leave --scheduler out" in message
     assert main(["sweep", "outcome_map", "--scheduler", "nonsense"]) == 2
     assert not (tmp_path / "outputs").exists()
+
+
+def test_the_time_left_holds_though_the_last_runs_take_ten_times_as_long(monkeypatch):
+    # From the first runs alone, it would be five times too low. The clock is that of the runs.
+    clock, told = [0.0], []
+    monkeypatch.setattr(many, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
+
+    class Listening(Reporter):
+        def tell(self, line):
+            told.append((clock[0], line()))
+
+    def work(make, numbers):
+        rows = [{"status": "", "wall_s": 10.0 if number >= 400 else 1.0} for number in numbers]
+        clock[0] += sum(row["wall_s"] for row in rows)
+        return rows
+
+    with LocalWorkers(1) as workers_of:
+        runner = many.Runner(workers_of=workers_of, reporter=Listening())
+        list(runner.rows("runs", range(800), float, lambda number: "rigid", work))
+    assert len(told) > 40
+    for now, line in told:
+        words = re.search(r"[^,]*(?= left)", line)
+        left, rest = (
+            sum(int(n) * UNITS[unit] for n, unit in re.findall(r"(\d+) (\w+)", words[0])),
+            clock[0] - now,
+        )
+        assert now < 200.0 or rest < 400.0 or 0.5 < left / rest < 2.0, line
