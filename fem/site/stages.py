@@ -54,7 +54,6 @@ from fem.site.runs import (
     key_of,
 )
 from fem.study.runner import Row, Runner
-from fem.study.workers import hand_out
 
 #: factors on the motions beside 1, and values tried below the first that fails and below the first that overturns
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
@@ -415,7 +414,7 @@ class Stages:
         for period in dict.fromkeys(key.building_period_s for key in keys):
             numbers = sorted({key.motion for key in keys if key.building_period_s == period})
             make = partial(
-                further_motions,
+                further_motion,
                 self.request,
                 self.target,
                 self.ground[0].vertical is not None,
@@ -423,39 +422,38 @@ class Stages:
                 period,
                 self.folder,
             )
-            pools = runner.workers_of(self.request.heading.model, len(keys))
-            for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
-                for number, motion in zip(chunk, made, strict=True):
-                    self.motions[motion_stem(number, period, FURTHER)] = motion
+            asked = zip(numbers, numbers, strict=True)
+            for number, motion in runner.found("further motions made", asked, make):
+                if isinstance(motion, ValueError):
+                    raise motion
+                self.motions[motion_stem(number, period, FURTHER)] = motion
 
 
-def further_motions(
+def further_motion(
     request: SiteRequest,
     target: MotionTarget,
     vertical: bool,
     longest: float,
     period: float | None,
     folder: Path,
-    numbers: Sequence[int],
-) -> list[GroundMotion]:
-    """Artificial motions beyond the set, on the floor of a building of this period or on the ground (None).
+    number: int,
+) -> GroundMotion:
+    """An artificial motion beyond the set, on the floor of a building of this period or on the ground (None).
 
-    Their files are written in the folder.
+    Its files are written in the folder.
     """
-    table, made = request.motions, []
-    for number in numbers:
-        (motion,) = artificial_motions(
-            target,
-            count=1,
-            seed=table.seed,
-            stationary=table.stationary_s,
-            longest=longest,
-            vertical=vertical,
-            second=table.second_component,
-            first=FIRST_FURTHER + number,
-            passes=FURTHER_PASSES,
-        )
-        moved = on_floor(request.building, motion, period)
-        write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, FURTHER))
-        made.append(moved)
-    return made
+    table = request.motions
+    (motion,) = artificial_motions(
+        target,
+        count=1,
+        seed=table.seed,
+        stationary=table.stationary_s,
+        longest=longest,
+        vertical=vertical,
+        second=table.second_component,
+        first=FIRST_FURTHER + number,
+        passes=FURTHER_PASSES,
+    )
+    moved = on_floor(request.building, motion, period)
+    write_csv_files(folder, replace(moved, second=None), motion_stem(number, period, FURTHER))
+    return moved

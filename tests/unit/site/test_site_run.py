@@ -216,7 +216,7 @@ def test_quick_is_never_fulfilled_of_a_container_that_moves(tmp_path, capsys, br
 def test_a_container_that_rests_is_answered_without_a_run(tmp_path, monkeypatch, brief):
     place = site_file(tmp_path, reference=0.8, further=72)
     same = ground_motions(load_site(place), 4.0)[:1]
-    monkeypatch.setattr("fem.site.stages.further_motions", lambda *arguments: same * len(arguments[-1]))
+    monkeypatch.setattr("fem.site.stages.further_motion", lambda *arguments: same[0])
     result = run_site(load_site(place), tmp_path / "out", jobs=1, quick=True)
     answer = result.result
     assert (answer.answer, answer.still, answer.runs) == ("fulfilled", 6, 6)
