@@ -402,14 +402,17 @@ def _compute(
             }
             each = [forecast(tried[value], runner.jobs, scan=False) for value in values]
             what = f"{len(values)} value{'s' * (len(values) > 1)}, up to {sum(one.most for one in each)} runs"
-            loads = [tried[value].load for value in values]
-            seconds = sum(
+            # they change between any two of the scan, as far as is known
+            known = _fulfilled(answers) or {value: str(k % 2) for k, value in enumerate(axis.values)}
+            rounds = 0.0 if axis.whole else rounds_left(known, resolution=RESOLUTION, inner=INNER)
+            count = len(values) * max(rounds, 1.0) if took else len(values) + INNER * rounds
+            loads = (tried[value].load for value in values)
+            forecasts = [
                 load * (one.seconds + one.deciding_seconds) for load, one in zip(loads, each, strict=True)
-            )
-            if took:  # as long as those that took longest: the next ones are near the boundary
-                rounds = rounds_left(_fulfilled(answers), resolution=RESOLUTION, inner=INNER)
-                seconds = len(values) * max(rounds, 1.0) * float(np.mean(sorted(took)[-2:]))
-                what += ", then values between them" * (rounds > 1.0)
+            ]
+            # as long as those that took longest: the next ones are near the boundary
+            seconds = count * float(np.mean(sorted(took)[-2:] or forecasts))
+            what += ", then values between them" * (count > len(values))
             runner.reporter.message(f"{what}: {expected_words(seconds, runner.jobs)}")
             for value in values:
                 since = time.perf_counter()
