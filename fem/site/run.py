@@ -59,7 +59,7 @@ from fem.site.result import (
 )
 from fem.site.rule import governing_run
 from fem.site.runs import COLUMNS, CONFIRMING, KEYS, cases_of, cells_of
-from fem.site.stages import Stages
+from fem.site.stages import MOST_LOAD, Stages
 from fem.study.driver import COMPLETED, INTERRUPTED, LoggedRuns, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import NamedStages, Runner, compute_many
 from fem.study.table import line_of, row_of, table_text
@@ -207,7 +207,7 @@ def answered(
         stages.add(row)
 
     if motions.valid:
-        cases = cases_of(request, stages.folder)
+        cases, since = cases_of(request, stages.folder), time.perf_counter()
         LoggedRuns(
             what="runs",
             path=log,
@@ -225,8 +225,9 @@ def answered(
             runs, own = stages.in_order(), stages.found(stages.of_set())
             governing = governing_run(request.limits, own)
             if keys := [key for key in deciding(runs, governing) if key not in stages.still]:
-                expected = forecast(stages, runner.jobs).deciding_seconds
-                told.begin(DECIDING, len(keys), seconds=stages.load * expected)
+                one = forecast(stages, runner.jobs, scan=scans)
+                load = (time.perf_counter() - since) * one.most / (one.seconds * max(len(stages.rows), 1))
+                told.begin(DECIDING, len(keys), seconds=min(max(load, 1.0), MOST_LOAD) * one.deciding_seconds)
                 again = confirmed(cases, runs, keys, runner.jobs)
     return None if runner.stop() else now()
 
