@@ -132,13 +132,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_140, 60),
     "solid": ("fem/solid", 1_669, 60),
     "model": ("fem/model", 3_810, 115),
-    "run": ("fem/run", 4_441, 139),
+    "run": ("fem/run", 4_449, 140),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_860, 127),
-    "study": ("fem/study fem/response", 7_102, 198),
-    "site": ("fem/site", 4_375, 113),
+    "study": ("fem/study fem/response", 7_173, 198),
+    "site": ("fem/site", 4_388, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_804, 42),
-    "product": ("mesh contact fem", 52_115, 1_531),
-    "tests": ("tests", 36_283, 2_137),
+    "product": ("mesh contact fem", 52_207, 1_532),
+    "tests": ("tests", 36_323, 2_139),
 }
 
 
