@@ -37,7 +37,7 @@ from fem.model.floor import slab_of
 from fem.model.frames import frame_interval
 from fem.model.links import begin_links
 from fem.model.motion import build_motions, longest_run, motions_end, peaks_in_run
-from fem.model.peaks import ROUNDING, stress_bounds, stressed_nodes
+from fem.model.peaks import watched_stress
 from fem.model.resting import still_from
 from fem.model.restitution import require_loss
 from fem.model.static_checks import StaticChecks, static_checks_of
@@ -252,21 +252,16 @@ def _watched_stresses(case: Case, container: Container) -> Stresses:
     """The stress of a reduced model beside its contacts: impacts strain it there, where the energy shows it least."""
     if case.solver.model != "reduced":
         return NO_STRESSES
-    bases = [
-        (body.basis, stressed_nodes(case, body.elements, body.basis, body.nodes)) for body in container.bodies
-    ]
-    modes = max(basis.angular_frequencies.size for basis, _ in bases)
-    points = max(nodes.size for _, nodes in bases)
-    of_modes, bounds = np.zeros((len(bases), modes, points, 3)), np.zeros(len(bases))
-    for body, (basis, nodes) in enumerate(bases):
-        stress, frequencies = basis.stress[:, :, nodes], basis.angular_frequencies
-        of_modes[body, : frequencies.size, : nodes.size] = np.moveaxis(stress, 0, -1)
-        bounds[body] = 2.0 * (1.0 + ROUNDING) * np.max(stress_bounds(stress, frequencies)) ** 2
+    watched = [watched_stress(case, body.elements, body.basis, body.nodes) for body in container.bodies]
+    modes, points = (max(stress.shape[axis] for stress, _ in watched) for axis in range(2))
+    of_modes = np.zeros((len(watched), modes, points, 3))
+    for own, (stress, _) in zip(of_modes, watched, strict=True):
+        own[: len(stress), : stress.shape[1]] = stress
     return Stresses(
-        first=3 + (3 + modes) * np.arange(len(bases)),
-        of_modes=of_modes.reshape(len(bases), modes, 3 * points),
-        group=np.array([0, len(bases)]),
-        bound=np.array([bounds.max()]),
+        first=3 + (3 + modes) * np.arange(len(watched)),
+        of_modes=of_modes.reshape(len(watched), modes, 3 * points),
+        group=np.array([0, len(watched)]),
+        bound=np.array([max(bound for _, bound in watched)]),
         sums=np.zeros(3 * points),
     )
 

@@ -6,6 +6,7 @@ depends on that (Saint-Venant's principle; `README.md` has figures). Without pos
 """
 
 import math
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -21,6 +22,7 @@ VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 
 ROUNDING = 1e-9
 LOWEST = 4  #: modes by which nodes are chosen whose stress is looked at
 ALIKE = 1e-3  #: relative difference of stresses at a node and its mirror image, at most
+_WATCHED = WeakKeyDictionary[ReducedBasis, dict[object, tuple[FloatArray, float]]]()  #: see `watched_stress`
 
 
 def casting_length(case: Case) -> float | None:
@@ -55,7 +57,22 @@ def stressed_nodes(case: Case, elements: FiniteElements, basis: ReducedBasis, lo
     return counted[largest.any(axis=0)]
 
 
+def watched_stress(
+    case: Case, elements: FiniteElements, basis: ReducedBasis, loaded: IntArray
+) -> tuple[FloatArray, float]:
+    """Stress of each mode at the `stressed_nodes`, (m, n_s, 3), and the largest of its bounds squared, over the energy.
+
+    Found once for a basis, which the runs of a band share.
+    """
+    known, key = _WATCHED.setdefault(basis, {}), (casting_length(case), loaded.tobytes())
+    if key not in known:
+        stress = basis.stress[:, :, stressed_nodes(case, elements, basis, loaded)]
+        bound = 2.0 * (1.0 + ROUNDING) * np.max(stress_bounds(stress, basis.angular_frequencies)) ** 2
+        known[key] = np.moveaxis(stress, 0, -1), bound
+    return known[key]
+
+
 def stress_bounds(stress: FloatArray, angular_frequencies: FloatArray) -> FloatArray:
     """Largest von Mises stress of nodes for modes (3, m, n) [Pa], over the root of twice the strain energy, (n,)."""
-    rooted = np.tensordot(VON_MISES_ROOT, stress / angular_frequencies[:, None], axes=1)
-    return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))
+    rooted = np.moveaxis(np.tensordot(VON_MISES_ROOT, stress / angular_frequencies[:, None], axes=1), -1, 0)
+    return np.sqrt(np.linalg.eigvalsh(rooted @ rooted.swapaxes(1, 2))[:, -1])
