@@ -132,9 +132,10 @@ class HistoryWriter:
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
         """Write samples: rows of numbers, in the columns of the header without `mode`, and their modes, length n."""
-        for row, mode in zip(rows.tolist(), modes, strict=True):
-            words = [repr(number) for number in row]
-            self._write(",".join([*words[: self._mode], mode, *words[self._mode :]]) + "\n")
+        lines = [list(map(repr, row)) for row in rows.tolist()]
+        for words, mode in zip(lines, modes, strict=True):
+            words.insert(self._mode, mode)
+        self._write("".join(",".join(words) + "\n" for words in lines))
 
     def close(self) -> None:
         """Close the file; closing twice does no harm."""
@@ -184,7 +185,7 @@ def read_history(path: Path) -> History:
         fields = line.split(",")
         modes.append("".join(fields[column : column + 1]))
         try:
-            values[number] = [float(field) for field in fields[:column] + fields[column + 1 :]]
+            values[number] = list(map(float, fields[:column] + fields[column + 1 :]))
         except ValueError:
             raise ValueError(
                 f"{path}, line {number + 2}: {len(numbers)} numbers and a mode are needed"
