@@ -149,7 +149,7 @@ class Recorder:
             columns |= zip(links, samples.force[:count, -len(links) :, 1].T, strict=True)
         rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
-        modes = [MODES[int(mode)] for mode in samples.mode[:count]]
+        modes = [MODES[mode] for mode in samples.mode[:count].tolist()]
         self._rows.append(rows)
         self._modes += modes
         if self._history_sink is not None:
