@@ -4,8 +4,10 @@ Cases that have the same container share its mesh and modes. A case that cannot 
 status "failed" and the reason; it never has an outcome.
 """
 
+import math
 import time
 import warnings
+from bisect import bisect
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -97,17 +99,25 @@ class Runner:
         for item in items:
             by_model.setdefault(model_of(item), []).append(item)
         total, done, failed, began = sum(map(len, by_model.values())), 0, 0, time.perf_counter()
-        first: float | None = None  # when some were done, after whatever was compiled [s]
-        worked, foretold, group = 0.0, False, _Group[ItemT]([], 1)  # what those after it cost [s]
+        #: when some were done, after whatever was compiled, and what all until then cost [s]
+        marks: list[tuple[float, float]] = []
+        foretold, group = False, _Group[ItemT]([], 1)
         follow = " with those that may follow" * (more > 0.0)
 
         def left() -> float | None:
             """Wall time of those that are not done, and of those that are expected to follow [s]."""
-            if first is None or not worked:
+            if not marks:
+                return None
+            now, worked = marks[-1]
+            half = (
+                bisect(marks, (0.5 * (marks[0][0] + now), math.inf)) - 1
+            )  # what is loaded first takes its time
+            since, before = marks[half]
+            if worked <= before:
                 return None
             counts = [more, *(len(by_model[one]) * OF_A_SECOND[one] / OF_A_SECOND[model] for one in models)]
             rest = group.left + sum(counts) * group.mean
-            return rest * (time.perf_counter() - first) / worked
+            return rest * (now - since) / (worked - before)
 
         def told() -> str:
             """How much is done, how fast, and the time left."""
@@ -137,10 +147,12 @@ class Runner:
                     yield chunk[: len(rows)], rows
                     done, failed = done + len(rows), failed + sum(row["status"] == "failed" for row in rows)
                     cost, now = group.note(chunk, rows), time.perf_counter()
-                    worked, first = (worked + cost, first) if first else (0.0, now if done else None)
+                    if done:
+                        marks.append((now, marks[-1][1] + cost if marks else 0.0))
                     if done < total:
                         self.reporter.tell(told)
-                        if first and not foretold and now > first + MEASURED_S and (seconds := left()):
+                        measured = not foretold and marks and now > marks[0][0] + MEASURED_S
+                        if measured and (seconds := left()):
                             foretold = True  # said once, by what the first of all over the group took
                             say_expected(self.reporter, f"{total - done} more {what}{follow}", seconds)
         finally:
