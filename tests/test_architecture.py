@@ -134,10 +134,10 @@ BUDGET = {
     "model": ("fem/model", 3_822, 116),
     "run": ("fem/run", 4_449, 140),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_860, 127),
-    "study": ("fem/study fem/response", 7_173, 198),
+    "study": ("fem/study fem/response", 7_185, 198),
     "site": ("fem/site", 4_388, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_804, 42),
-    "product": ("mesh contact fem", 52_232, 1_533),
+    "product": ("mesh contact fem", 52_244, 1_533),
     "tests": ("tests", 36_323, 2_139),
 }
 
