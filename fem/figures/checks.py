@@ -113,7 +113,7 @@ def band_figure(run: RunData) -> Figure | None:
     for axes in (above, below):
         axes.set_xlim(-0.6, len(groups) - 0.4)
     style.legend_above(above, columns=4)
-    sure = sure_in_words(verdict) or ("unsure" if band.unsure else "the same outcome throughout")
+    sure = sure_in_words(run.typed_result) or ("unsure" if band.unsure else "the same outcome throughout")
     low, high = band[TURNED] or (0.0, 0.0)
     ratios = " to ".join(map(RATIO.text, (low, high)))
     statement = f"rotation ratio {ratios}; the large mark is the run itself"

@@ -81,6 +81,7 @@ def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> Motio
             result or _evaluated(motion, duration),
             kind=keys.kind if keys.kind != "none" or not turned else case.motion.kind,
             notes=(*of_record, *motion_notes(motion, table)),
+            endless=(isinstance(motion, HarmonicMotion) and math.isinf(motion.end_time)) or None,
         )
 
     upward = numbers(case.vertical, vertical, "vertical") if case.has_normal else None

@@ -30,7 +30,7 @@ from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.kinds import RUN
-from fem.results.level import SURE, Level, level_of, numerical, sure_in_words
+from fem.results.level import SURE, Level, is_cut, level_of, numerical, sure_in_words
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict, to_overturn
@@ -92,9 +92,10 @@ def run_report(
         "finished": finished,
         "models": models,
         "models_compared": compared_in_words(case, models),
-        "standing": _standing(verdict) if finished else "open",
+        "standing": _standing(result) if finished else "open",
         "sentences": (" ".join(card[:2]), " ".join(card[2:])),
-        "sure": _sure(verdict),
+        "sure": _sure(result),
+        "cut": is_cut(result),
         "sketch": sketch(
             case,
             centroid=static.centroid,
@@ -130,19 +131,22 @@ def run_report(
     return html_of(page, "run.html.j2", view=view, modes_of_a_body=modes_of_a_body, **SAID)
 
 
-def _standing(verdict: Verdict) -> str:
-    """How the verdict is coloured: what the run found, never whether that is safe."""
+def _standing(result: RunResult) -> str:
+    """How the verdict is coloured: what the run found, never whether that is safe; nothing tried is not sure."""
+    verdict = result.verdict or Verdict()
     if verdict.outcome == Outcome.OVERTURNED:
         return "fell"
-    return "stood" if verdict.outcome is None or level_of(verdict) == Level.STANDS else "unsure"
+    sure = verdict.sure is not None and level_of(result) == Level.STANDS
+    return "stood" if verdict.outcome is None or sure else "unsure"
 
 
-def _sure(verdict: Verdict) -> tuple[str, str]:
+def _sure(result: RunResult) -> tuple[str, str]:
     """How sure the outcome is, and why; without a reason: nothing was tried."""
+    verdict = result.verdict or Verdict()
     if (band := verdict.band) is None:
         return (verdict.sure, "by the static rule alone") if verdict.sure else ("not computed", "")
     named = ", ".join(WORDS.get(key, key) for key in verdict.decided_by)
-    known = sure_in_words(verdict) or ("unsure" if band.unsure else "same outcome")
+    known = sure_in_words(result) or ("unsure" if band.unsure else "same outcome")
     if verdict.sure == SURE and all(map(numerical, band.members[1:])):
         known = "no input varied"
     return known, f"{', '.join(band.outcomes)}{f'; decided by {named}' if named else ''}"

@@ -21,7 +21,7 @@ from fem.response.lasting import ResponseResult, response_answer, stable_in_word
 from fem.results.errors import FolderError
 from fem.results.figures import DURATION, PGA, PGD, PGV, TURNED, Place, Shown, figures_of
 from fem.results.kinds import ENSEMBLE, HALL, RESPONSE
-from fem.results.level import STANDING
+from fem.results.level import REGIME_UNSURE, STANDING, SURE, UNSURE
 from fem.results.outcome import COUNTED, Outcome
 from fem.run import described
 from fem.run.card import deciding_in_words, times
@@ -323,13 +323,16 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
     elif info.state == "finished":
         count += " No run was repeated, so sureness and margins are not known."
     outcomes = "; ".join(f"{word}: {number}" for word, number in info.counts.items())
-    counted = dict.fromkeys(word for tag in info.tags for word in sorted(tag["counts"]))
+    by_tag = Counter[tuple[str, str]]()
+    for row in info.table:
+        by_tag[row["tag"], row.get("does") or row["outcome"] or row["status"]] += row["count"]
+    words = dict.fromkeys((*info.counts, *(word for _, word in by_tag)))
     asked = ["--motion", *info.motions] if info.motions else []
     asked += ["--margins", info.checks] * (info.checks != "weakest") + ["--one-side"] * bool(info.one_side)
     command = command_line(
         "batch", "list.csv", "--case", "base.toml", *asked, allow_outside=bool(info.allow_outside)
     )
-    words = "With the two files of this folder, and the motions:"
+    how = "With the two files of this folder, and the motions:"
     moving, resting = folded(info.ranked)
     return _html(
         "list of containers",
@@ -343,7 +346,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         sentence=info.answer,
         count=count,
         more=[f"{outcomes[0].upper()}{outcomes[1:]}."] if outcomes else [],
-        tag_counts=[(word, [tag["counts"].get(word, "") for tag in info.tags], N) for word in counted],
+        tag_counts=[(word, [by_tag[tag["tag"], word] or "" for tag in info.tags], N) for word in words],
         key_figures=figures_of(Place.KEY),
         moving=moving,
         resting=resting,
@@ -351,7 +354,7 @@ def hall_report(folder: Path, *, signature: Signature | None = None, brief: bool
         looks=[LOOKS.get(row.get("does") or row["outcome"], "") for row in moving],
         brief=brief,
         provenance=[("list", f"{info.hall}, {info.status}, model {info.model}"), ("hash", info.asked)],
-        again=None if brief else (words, command, [("base.toml", _text(folder / "base.toml"))]),
+        again=None if brief else (how, command, [("base.toml", _text(folder / "base.toml"))]),
     )
 
 
@@ -541,6 +544,9 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "shown": _shown,
     "code": CODE.format,
     "at": lambda row, key, empty=None: "" if row[key] in (None, empty) else row[key],
+    "agreement": lambda sure: {SURE: "alike", REGIME_UNSURE: "end alike", UNSURE: "not alike"}.get(
+        sure, sure
+    ),
     "axis_label": axis_label,
     "cell_label": lambda value: str(value) if isinstance(value, bool | str) else short(value),
     "deciding": lambda keys: keys and deciding_in_words(keys.split()),

@@ -234,7 +234,19 @@ class LinkFigures(JsonBlock, Generic[ValueT]):
     link_slack_m: ValueT | None = shown("least gap or slack left", MM, OF_LINKS)
     #: over its own slenderness angle
     neighbour_rotation_ratio: ValueT | None = shown("rotation ratio of the neighbours", units.RATIO, OF_LINKS)
-    neighbour_slip_m: ValueT | None = shown("slip of the neighbours", MM, BAND)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldFigures(JsonBlock, Generic[ValueT]):
+    """What one neighbour, stop or tie does; None of what it has not."""
+
+    max_force_N: ValueT | None = None
+    hits: ValueT | None = None
+    largest_closing_velocity_m_s: ValueT | None = None
+    gap_left_m: ValueT | None = None
+    broken_at_s: ValueT | None = None
+    rotation_ratio: ValueT | None = None  #: of a neighbour that stands
+    max_slip_m: ValueT | None = None  #: of a neighbour, over the floor
 
 
 JOINT_SLIP = Shown(
@@ -343,7 +355,7 @@ BOX_FIGURES = declared_in(BoxFigures)
 #: what falls first of several that stand on or beside one another
 FELL_FIRST = ("fell_box", "fell_in_row")
 #: of what not every run has
-WHERE_GIVEN = frozenset(declared_in(LinkFigures)) | {*FELL_FIRST, "row_outcomes", "boxes"}
+WHERE_GIVEN = frozenset(declared_in(LinkFigures)) | {*FELL_FIRST, "row_outcomes", "boxes", "links"}
 #: keys of the two figures that studies limit and rank by: how far a container turns, and how far it slips
 TURNED, SLIPPED = "rotation_ratio", "max_slip_m"
 

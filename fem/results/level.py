@@ -6,8 +6,8 @@ from enum import StrEnum
 from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.uncertainty import InputChange
 from fem.results.figures import RunFigures
-from fem.results.outcome import ENDINGS, NOT_STANDING, Ending, Outcome
-from fem.results.run_result import Band, ChangedRun, Verdict
+from fem.results.outcome import ENDINGS, NOT_STANDING, ROCKING, Ending, Outcome
+from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
 #: factor below which a motion is hardly another one: by such changes "sure" was tried (`bench.py words`)
@@ -22,7 +22,7 @@ class Level(StrEnum):
     MAY_OVERTURN = "may overturn"
     MAY_DESTROY = "may destroy a corner"
     UNSURE = "stands, which is not sure"  # for another reason than a variation that falls
-    ENDS_ROCKING = "stands until its run ends"
+    CUT = "stands until its run ends"
     LEAVES = "leaves its place"
     ONLY_JUST = "stands only just"
     MAY_LEAVE = "may leave its place"
@@ -37,19 +37,21 @@ STANDING = {
     Outcome.HOP: "lifts off and stands",
     Outcome.REST: "rests",
 }
+LARGE_ROTATION = 0.1  #: rotation ratio from which another size is another way to stand
 
 
-def level_of(verdict: Verdict) -> Level:
-    """The level of the verdict of a run that has an outcome."""
+def level_of(result: RunResult) -> Level:
+    """The level of a run that has an outcome."""
+    verdict = result.verdict or Verdict()
     if not stands(verdict):
         return Level.OVERTURNS if verdict.outcome == Outcome.OVERTURNED else Level.DESTROYS
     if fallen := fallen_in_band(verdict):
-        return Level.MAY_OVERTURN if fallen[0] == Ending.OVERTURNED else Level.MAY_DESTROY
+        return Level.MAY_OVERTURN if Ending.OVERTURNED in fallen[0] else Level.MAY_DESTROY
     _, own, most = slips_of(verdict)
     place = math.inf if verdict.place_m is None else verdict.place_m
     reached = (
         (verdict.sure == UNSURE, Level.UNSURE),
-        (verdict.still_turned is not None, Level.ENDS_ROCKING),
+        (is_cut(result), Level.CUT),
         (own > place, Level.LEAVES),
         (only_just(verdict), Level.ONLY_JUST),
         (most > place, Level.MAY_LEAVE),
@@ -57,10 +59,28 @@ def level_of(verdict: Verdict) -> Level:
     return next((level for reaches, level in reached if reaches), Level.STANDS)
 
 
-def in_a_word(verdict: Verdict) -> str:
+def in_a_word(result: RunResult) -> str:
     """Its level as lists have it: of what stands, what it does."""
-    level = level_of(verdict)
-    return STANDING[verdict.outcome or Outcome.REST] if level == Level.STANDS else level
+    verdict, level = result.verdict or Verdict(), level_of(result)
+    if level not in (Level.STANDS, Level.CUT) or verdict.still_turned or verdict.still_sliding_m_s:
+        return level
+    ends = " until its run ends" if level == Level.CUT else ""
+    return f"{STANDING[verdict.outcome or Outcome.REST]}{ends}{', may rock' if may_rock(verdict) else ''}"
+
+
+def is_cut(result: RunResult) -> bool:
+    """True if the run ends while it moves, or before its motion: what follows is not known."""
+    verdict = result.verdict or Verdict()
+    moves = verdict.still_turned is not None or verdict.still_sliding_m_s is not None
+    return moves or (result.motion is not None and result.motion.is_cut)
+
+
+def may_rock(verdict: Verdict) -> bool:
+    """True if it does not rock as given, and variations that stand turn far."""
+    most = verdict.band.rotation_ratio if verdict.band else None
+    return (
+        stands(verdict) and verdict.outcome not in ROCKING and most is not None and most[1] > LARGE_ROTATION
+    )
 
 
 def only_just(verdict: Verdict) -> bool:
@@ -69,12 +89,13 @@ def only_just(verdict: Verdict) -> bool:
     return stands(verdict) and factor is not None and factor < SAME_MOTION
 
 
-def sure_in_words(verdict: Verdict) -> str:
+def sure_in_words(result: RunResult) -> str:
     """How sure the outcome is, as people read it; empty where nothing was tried."""
+    verdict = result.verdict or Verdict()
     if verdict.sure in (None, UNSURE):
         return verdict.sure or ""
-    if verdict.still_turned or only_just(verdict):
-        return Level.ENDS_ROCKING if verdict.still_turned else Level.ONLY_JUST
+    if stands(verdict) and (is_cut(result) or only_just(verdict)):
+        return Level.CUT if is_cut(result) else Level.ONLY_JUST
     if verdict.sure == SURE:
         return SURE
     return (
@@ -107,8 +128,9 @@ def numerical(change: ChangedRun | InputChange) -> bool:
     return TOLERANCE in (change.values or {})
 
 
-def fallen_in_band(verdict: Verdict) -> tuple[Ending, int, int] | None:
-    """How variations end that do not stand under the motion of the run, how many, of how many; None where all stand."""
+def fallen_in_band(verdict: Verdict) -> tuple[dict[Ending, int], int] | None:
+    """How many variations do not stand under the motion of the run, by their end, of how many; None where all stand."""
     members = verdict.band.members[1:] if verdict.band is not None else ()
     tried = [ending(run) for run in members if run.outcome is not None and not numerical(run)]
-    return next(((kind, tried.count(kind), len(tried)) for kind in NOT_STANDING if kind in tried), None)
+    fallen = {kind: tried.count(kind) for kind in NOT_STANDING if kind in tried}
+    return (fallen, len(tried)) if fallen else None

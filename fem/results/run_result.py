@@ -4,15 +4,28 @@ Every field has the name of its key in the file, with its SI unit. A quantity th
 older version did not write, is None. Rotation > 0 toward +x, slip > 0 moves the container to +x.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from typing import Any
 
-from fem.results.figures import WHERE_GIVEN, BoxFigures, Figures, LinkFigures, Place, RunFigures, keys_beside
+from fem.results.figures import (
+    WHERE_GIVEN,
+    BoxFigures,
+    Figures,
+    HeldFigures,
+    LinkFigures,
+    Place,
+    RunFigures,
+    keys_beside,
+)
 from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.runtime.units import Reach
+
+FEW_PERIODS = 5.0  #: of a harmonic motion, in which what rocks under it has not built up
+WHOLE = 1.0 - 1e-9  #: share of a motion that is all of it
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,8 +109,26 @@ class MotionResult(JsonBlock):
     covered: float | None = None  #: share of the motion's time within the run
     peak_in_run_m_s2: float | None = None  #: largest acceleration within the run
     vertical: "MotionResult | None" = None  #: the same of the vertical motion; left out where there is none
+    endless: bool | None = None  #: a harmonic motion that goes on; left out of any other
 
-    written_where_given = frozenset({"vertical"})
+    written_where_given = frozenset({"vertical", "endless"})
+
+    @property
+    def few_periods(self) -> float | None:
+        """The periods of a harmonic motion that has no end, where a run covers too few; None of any other."""
+        if not self.endless or not self.duration_s or not self.peak_velocity_m_s:
+            return None
+        angular_frequency = (self.peak_acceleration_m_s2 or 0.0) / self.peak_velocity_m_s
+        periods = self.duration_s * angular_frequency / math.tau
+        return periods if periods < FEW_PERIODS else None
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether the run ends before its motion, or after few periods of one that has no end."""
+        covered = [
+            one.covered for one in (self, self.vertical) if one is not None and one.covered is not None
+        ]
+        return self.few_periods is not None or min(covered, default=1.0) < WHOLE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,6 +172,16 @@ class BoxReach(BoxFigures[Reach]):
 
 
 @dataclass(frozen=True, kw_only=True)
+class HeldResult(HeldFigures[float]):
+    """What one neighbour, stop or tie did in a run of a band."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldReach(HeldFigures[Reach]):
+    """The same over the band, [low, high]."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class ChangedRun(RunFigures):
     """One run of a band."""
 
@@ -151,6 +192,7 @@ class ChangedRun(RunFigures):
     damping_ratio: float | None = None  #: of the contact
     status: str  #: completed | overturned | failed | interrupted
     error: str | None = None
+    links: tuple[HeldResult, ...] | None = None  #: of neighbours, stops, ties, in this order
 
     written_where_given = keys_beside(Place.BAND) | WHERE_GIVEN
 
@@ -170,6 +212,7 @@ class Band(LinkFigures[Reach], Figures[Reach]):
     left_out: tuple[str, ...] = ()  #: changes that the time did not allow
     draws_left_out: int | None = None
     boxes: tuple[BoxReach, ...] | None = None  #: of a loose stack, from the floor up
+    links: tuple[HeldReach, ...] | None = None  #: of neighbours, stops, ties, in this order
     members: tuple[ChangedRun, ...] = ()  #: the run itself first
 
     written_where_given = keys_beside(Place.BAND) | WHERE_GIVEN
@@ -275,6 +318,7 @@ class Verdict(RunFigures):
     #: what it does, the margin that governs, how far it moves, how sure that is, the static rule: a line each
     card: tuple[str, ...] = ()
     still_turned: float | None = None  #: |rotation| over the angle, of one that rocks as its run ends
+    still_sliding_m_s: float | None = None  #: of one that slides as its run ends, and comes to rest by itself
     place_m: float | None = None  #: slip beyond which it has left its place
     place_is: str | None = None  #: whose that is: limit | width | gap
     #: sure | regime unsure: it stands, or falls, in all variations, but may move otherwise | unsure; None: not tried
@@ -297,6 +341,7 @@ class Verdict(RunFigures):
                 "place_m",
                 "place_is",
                 "still_turned",
+                "still_sliding_m_s",
             ),
         }
     )

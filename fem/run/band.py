@@ -29,7 +29,7 @@ from fem.results.run_result import ChangedRun, JointDemand, Numerics, RunResult,
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.sureness import judged, static_use
-from fem.run.verdict import joint_demands, verdict_of
+from fem.run.verdict import held_by, joint_demands, verdict_of
 from fem.run.words import largest_bolt_forces
 from fem.runtime.identity import program_identity
 from fem.runtime.memory import threads_of_rigid_runs
@@ -266,6 +266,7 @@ def _changed_run(
         outcome=verdict.outcome,
         **verdict.figures(Place.BAND) | {"bolt_tension_N": tension, "bolt_shear_N": shear},
         boxes=verdict.boxes,
+        links=held_by(model),
         **{key: getattr(verdict, key) for key in FELL_FIRST},
     )
 

@@ -4,7 +4,7 @@
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import comb
 from typing import Any
@@ -14,7 +14,7 @@ from contact.stepping.modes import ROCKING
 from fem.case.case import Case
 from fem.case.tables.duration import MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.case.tables.input_ranges import DASHPOT, WEAKENING
-from fem.case.tables.unknown_inputs import WORDS, in_words, value_in_words
+from fem.case.tables.unknown_inputs import WORDS, in_words, is_sign, value_in_words
 from fem.results import level as levels
 from fem.results.figures import SLIPPED, TURNED
 from fem.results.kinds import RUN
@@ -65,6 +65,7 @@ LIMITS: dict[str, Any] = {
     "FAST_RELAXATION": 0.1,
     "ROCKING": ROCKING,
     "GAIN_LIMIT": GAIN_LIMIT,
+    "LIKE": 1.02,  #: ratio of two factors from which they are not alike: each is located within 1 %
     "MOST_FREE_MOTION": MOST_FREE_MOTION,
 }
 #: slip over the width, and its change over the larger one, from which a scatter is said
@@ -89,7 +90,7 @@ def with_words(result: RunResult, case: Case) -> RunResult:
     if result.verdict is None:
         return result
     card, known = card_of(result), result.verdict.outcome is not None
-    level = levels.level_of(result.verdict) if known else None
+    level = levels.level_of(result) if known else None
     return replace(result, verdict=replace(result.verdict, level=level, first_line=card[0], card=card))
 
 
@@ -134,7 +135,10 @@ def _lines(result: RunResult, names: Sequence[str]) -> list[str]:
         "used": used,
         "levels": levels,
         "leaves": own > place,
-        "may_leave": least <= place < most,
+        "may_leave": stands(verdict) and least <= place < most,
+        "level": levels.level_of(result) if verdict.outcome is not None else None,
+        "cut": levels.is_cut(result),
+        "by_box": by_box,
         "place": most > place and (between if by_box else f"slides {slip}"),
         "between": between if max(joints) > max(on_floor, SEEN) and not (most > place and by_box) else "",
         "steps": lambda step: PERCENT.text(step, figures=1),
@@ -184,6 +188,8 @@ def _variations(band: Band) -> dict[str, Any]:
         "failed_alone": _changes_in_words(failed_alone) if failed_alone else "",
         "below_uplift": below_uplift(band.members),
         "rests_on_stiff_floor": rests_on_stiff_floor(band.members),
+        "in_row": sum(member.fell_in_row is not None for member in band.members),
+        "itself_first": sum(member.fell_in_row == "container" for member in band.members),
     }
 
 
@@ -207,7 +213,8 @@ def _changes_in_words(runs: Sequence[ChangedRun]) -> str:
 def _counted(draws: Sequence[ChangedRun]) -> str:
     """How many variations of all inputs overturned, or destroyed a corner, with the intervals of their shares."""
     parts = []
-    for kind, words in ((Ending.OVERTURNED, "it overturns"), (Ending.INVALID, "a corner is destroyed")):
+    who = "one of the row" if any(draw.fell_in_row for draw in draws) else "it"
+    for kind, words in ((Ending.OVERTURNED, f"{who} overturns"), (Ending.INVALID, "a corner is destroyed")):
         count = sum(ending(draw) == kind for draw in draws)
         if count or (kind == Ending.OVERTURNED and all(map(stands, draws))):
             low, high = binomial_interval(count, len(draws), CONFIDENCE)
@@ -224,7 +231,7 @@ def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
     """
     keys, valid = draws[0].values or {}, all(ending(draw) != Ending.INVALID for draw in draws)
     least: tuple[float, str] = (1.0 - CONFIDENCE, "")
-    for key in keys:
+    for key in (key for key in keys if not is_sign(key)):
         known = [
             (value, stands(draw))
             for draw in draws
@@ -235,15 +242,22 @@ def _value_that_decides(draws: Sequence[ChangedRun]) -> str:
             others = [value for value, stood in known if stood is not standing]
             if not same or not others:
                 continue
+            above, below = _rounded(max(others), math.ceil), _rounded(min(others), math.floor)
             for beyond, limit, side in (
-                (sum(value > max(others) for value in same), max(others), "above"),
-                (sum(value < min(others) for value in same), min(others), "below"),
+                (sum(value > above for value in same), above, "above"),
+                (sum(value < below for value in same), below, "below"),
             ):
                 chance = 4 * len(keys) * comb(len(same), beyond) / comb(len(known), beyond)
                 if chance < least[0]:
                     value = value_in_words(key, limit)
                     least = chance, f", and all {beyond} with {WORDS[key]} {side} {value} {words}"
     return least[1]
+
+
+def _rounded(value: float, away: Callable[[float], int]) -> float:
+    """A value in two figures, up or down."""
+    digit = 10.0 ** (math.floor(math.log10(abs(value))) - 1) if value else 1.0
+    return away(value / digit) * digit
 
 
 def warnings_for(result: RunResult, case: Case) -> list[str]:

@@ -2,20 +2,21 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from contact.stepping.modes import ROCKING as ROCKING_SHARE
 from fem.case.case import Case
 from fem.case.tables.input_ranges import MU_KINETIC, STRIBECK, WEAKENING
 from fem.case.tables.unknown_inputs import in_words
 from fem.records.units import STANDARD_GRAVITY
-from fem.results.figures import BOX_FIGURES, FIGURES
+from fem.results.figures import BOX_FIGURES
 from fem.results.outcome import ROCKING, SLIDING, Outcome, least_slide
 from fem.results.run_result import (
+    WHOLE,
     Band,
     BoxReach,
     ChangedRun,
     FloorNumbers,
+    HeldReach,
     JointDemand,
     MotionResult,
     Plane,
@@ -25,7 +26,7 @@ from fem.results.run_result import (
     Verdict,
 )
 from fem.run.sureness import below_uplift, rests_on_stiff_floor
-from fem.run.words import of_band, paragraphs, rows, sentence
+from fem.run.words import paragraphs, rows, sentence
 from fem.runtime.units import JOINT_MILLIMETRES, MANY, METRES, SHORT_MILLIMETRES, Reach, in_figures
 from fem.seismic.wind import COMBINATION
 
@@ -34,7 +35,6 @@ ROUNDING = 1e-9  #: share of a peak
 LEAST = 0.1  #: of a number in a unit, before a smaller unit is taken
 NAMES = {"table": "record", "pulse": "pulse"}
 AS_ONE = "the boxes moved as one"
-FEW_PERIODS = 5.0  #: of a harmonic motion, in which what rocks under it has not built up
 
 
 def motion_in_words(motion: MotionResult) -> str:
@@ -76,13 +76,9 @@ def part_covered(motion: MotionResult) -> str:
     upward = motion.vertical
     known = [one for one in (motion, upward) if one is not None and one.covered is not None]
     cut = min(known, key=lambda one: one.covered or 0.0, default=motion)
-    if motion.kind == "harmonic" and motion.duration_s and motion.peak_velocity_m_s:
-        periods = (
-            motion.duration_s * (motion.peak_acceleration_m_s2 or 0.0) / motion.peak_velocity_m_s / math.tau
-        )
-        if periods < FEW_PERIODS:
-            return f"{periods:.2g} periods, {motion.duration_s:.3g} s"
-    if cut.covered is None or cut.duration_s is None or cut.covered >= 1.0 - 1e-9:
+    if motion.few_periods is not None:
+        return f"{motion.few_periods:.2g} periods, {motion.duration_s:.3g} s"
+    if cut.covered is None or cut.duration_s is None or cut.covered >= WHOLE:
         return ""
     part = f"{cut.covered * cut.duration_s:.4g} of {cut.duration_s:.4g} s"
     words = f"the first {part}" if cut.begin_s is None else f"{part}, from {-cut.begin_s:.4g} s of it on"
@@ -114,8 +110,10 @@ def link_rows(case: Case) -> list[tuple[str, str]]:
 def links_in_words(result: RunResult) -> str:
     """What each stop, tie and neighbour did, without a full stop; empty where there are none."""
     verdict = result.verdict or Verdict()
-    known: dict[str, Any] = {"neighbours": verdict.neighbours or (), "band": verdict.band or Band()}
-    return "; ".join(paragraphs("held.txt.j2", result=result, FIGURES=FIGURES, of_band=of_band, **known))
+    beside = verdict.neighbours or ()
+    count = len(beside) + len(result.stops or ()) + len(result.ties or ())
+    ranges = (verdict.band or Band()).links or [HeldReach()] * count
+    return "; ".join(paragraphs("held.txt.j2", result=result, neighbours=beside, ranges=ranges))
 
 
 def fall_in_row(verdict: Verdict) -> tuple[float, int, str] | None:

@@ -129,13 +129,15 @@ def margin_of(model: Model, result: RunResult, *, drawn: bool, stop: Callable[[]
     own, least = Search(_trial(model, {}, stop), {1.0: itself}), _least(model)
     most, draws = _largest(model.case), []
     fallen = None if itself.ending == Ending.OVERTURNED else fallen_in_band(verdict)
-    in_band = fallen and fallen[0]
+    in_band = next(iter(fallen[0])) if fallen else None
     try:
         with worker_threads(workers := workers_for(model, SCANNED)) as pool:
             _scan(own, least, most, pool, workers)
             runs = LEAST_RUNS if model.case.solver.model == "full" else int(OWN_S / cost)
-            _narrow([own], min(MOST_RUNS, max(LEAST_RUNS, runs)), pool, RESOLUTION)
-            bare = _bare(model, least, most, pool, stop) if model.case.links or model.case.neighbour else None
+            runs = min(MOST_RUNS, max(LEAST_RUNS, runs))
+            _narrow([own], runs, pool, RESOLUTION)
+            linked = model.case.links or model.case.neighbour
+            bare = _bare(model, least, most, runs, pool, stop) if linked else None
             begin = min(own.known) if in_band or itself.ending == Ending.OVERTURNED else 1.0
             if drawn:
                 drawn_runs = int(DRAWN_S / cost)
@@ -225,9 +227,12 @@ def _worst_draws(model: Model, verdict: Verdict, count: int) -> list[tuple[Mappi
 
 
 def _bare(
-    model: Model, least: float, most: float, pool: Executor, stop: Callable[[], bool]
+    model: Model, least: float, most: float, runs: int, pool: Executor, stop: Callable[[], bool]
 ) -> tuple[float | None, float] | None:
-    """The first factor that overturns the container without stops, ties and neighbours, and the largest one tried."""
+    """The first factor that overturns the container without stops, ties and neighbours, and the largest one tried.
+
+    It is sought as that of the container with them.
+    """
     free = model.case.with_values({name: [] for name in ROWS})
     try:
         bare = build_model(free, without_links(model.case, model.container))
@@ -236,7 +241,7 @@ def _bare(
     trial = _trial(bare, {}, stop)
     search = Search(trial, {1.0: trial(1.0)})
     _scan(search, least, most, pool, SCANNED)
-    search.locate(RESOLUTION)
+    _narrow([search], runs, pool, RESOLUTION)
     said = search.of(Ending.STANDING, Ending.OVERTURNED)
     return (search.first(Ending.OVERTURNED), max(said)) if said else None
 

@@ -11,7 +11,7 @@ the step of the scan may be missed.
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Any
 
@@ -21,13 +21,15 @@ from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.tables.unknown_inputs import INPUTS
 from fem.case.uncertainty import InputChange
 from fem.results.figures import BOX_FIGURES, FELL_FIRST, Place, RunFigures, keys_of
-from fem.results.level import REGIME_UNSURE, SURE, UNSURE, ending, numerical, stands
+from fem.results.json_block import JsonBlock
+from fem.results.level import LARGE_ROTATION, REGIME_UNSURE, SURE, UNSURE, ending, numerical, stands
 from fem.results.outcome import ROCKING, Outcome
-from fem.results.run_result import Band, BoxReach, ChangedRun, RunResult, StaticResult, Verdict
+from fem.results.run_result import Band, BoxReach, ChangedRun, HeldReach, RunResult, StaticResult, Verdict
+from fem.runtime.units import Reach
 
 ANOTHER_SIZE = 10.0
-#: slip over the width, and rotation ratio, from which another size is another way to stand
-LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
+#: slip over the width from which another size is another way to stand
+LARGE_SLIP = 0.01
 #: how a member differs from the run
 SAME, OTHER_REGIME, OTHER_END = 0, 1, 2
 ORDER = {key: k for k, key in enumerate(INPUTS)}
@@ -62,13 +64,14 @@ def judged(
     draws = [other for other in others if other.kind == "draw"]
     ranges: dict[str, Any] = {}
     for key in keys_of(Place.BAND):
-        known = [value for member in alike if (value := member[key]) is not None]
-        ranges[key] = (min(known), max(known)) if known else None
+        ranges[key] = _reach(alike, key)
     fell, boxes = Counter(member.fell_box for member in members), []  # by which box fell first
     for number, same in enumerate(zip(*(member.boxes for member in alike if member.boxes), strict=True), 1):
         values = {name: [box[name] for box in same] for name in BOX_FIGURES}
         reach = {name: (min(numbers), max(numbers)) for name, numbers in values.items()}
         boxes.append(BoxReach(fell=fell[number], **reach))
+    each = zip(*(member.links for member in alike if member.links), strict=True)
+    links = [HeldReach(**{one.name: _reach(same, one.name) for one in fields(HeldReach)}) for same in each]
     band = Band(
         outcomes=tuple(outcome for outcome in Outcome if outcome in outcomes),
         unsure=sure == UNSURE,
@@ -79,6 +82,7 @@ def judged(
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
         boxes=tuple(boxes) or None,
+        links=tuple(links) or None,
         **ranges,
     )
     stiff = [key for change in changes if change.kind == "floor" for key in change.inputs]
@@ -90,6 +94,12 @@ def judged(
         decided_by=tuple(key for key in dict.fromkeys(deciding) if key != TOLERANCE),
         band=band,
     )
+
+
+def _reach(runs: Sequence[JsonBlock], key: str) -> Reach | None:
+    """Least and largest value of those that have one."""
+    known = [value for run in runs if (value := run[key]) is not None]
+    return (min(known), max(known)) if known else None
 
 
 def how_sure(levels: Iterable[int]) -> str:

@@ -36,7 +36,15 @@ from fem.model.peaks import casting_length
 from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
-from fem.results.run_result import Energy, JointDemand, NeighbourResult, Numerics, Verdict, to_overturn
+from fem.results.run_result import (
+    Energy,
+    HeldResult,
+    JointDemand,
+    NeighbourResult,
+    Numerics,
+    Verdict,
+    to_overturn,
+)
 from fem.runtime.units import SECONDS
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
@@ -44,6 +52,7 @@ MOST_RESTITUTION = 1.05  #: of a first impact, above which other energy entered
 #: share of the slenderness angle from which one that rocks as its run ends is said to, by the kind of its motion: a
 #: harmonic one goes on as it was, and without any it comes to rest
 SWINGING = {"pulse": 0.1, "table": 0.1, "harmonic": 0.5, "none": math.inf}
+SLIDES_ON = 1e-3  #: way over the width from which one that slides as its run ends is said to
 STILL = 1e-4  #: change of the rotation over the slenderness angle below which a container does not turn
 
 
@@ -156,6 +165,7 @@ def verdict_from(
         max_indentation_m=_indentation(model),
         tilt_rad=None if fell or turns else lowest,
         still_turned=swing if swing >= SWINGING[case.motion.kind] else None,
+        still_sliding_m_s=None if fell else _still_sliding(case, time, slip),
         restored=outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
         and float(np.abs(turned).max()) < ROCKING * angle,
         at_rest_s=at_rest,
@@ -176,6 +186,18 @@ def verdict_from(
         **_of_links(model, neighbours),
         **_of_row(model, outcome, neighbours),
     )
+
+
+def _still_sliding(case: Case, time: np.ndarray, slip: np.ndarray) -> float | None:
+    """Speed of the last two samples of one that slides on by itself [m/s]; None where it hardly does.
+
+    On a level floor friction stops it over v^2/(2 mu g). Under a harmonic motion it slides to and fro all the time.
+    """
+    if len(time) < 2 or (case.motion.kind == "harmonic" and case.floor.slope == 0.0):
+        return None
+    speed = abs(float(slip[-1] - slip[-2])) / float(time[-1] - time[-2])
+    stops_from = 2.0 * case.contact.mu_kinetic * case.gravity_m_s2 * SLIDES_ON * case.stack[0].width
+    return speed if speed**2 > stops_from else None
 
 
 def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
@@ -248,8 +270,30 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
         "link_broken_at_s": _finite(float(links["broken_at"].min())),
         "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
         "neighbour_rotation_ratio": max((neighbour.rotation_ratio for neighbour in neighbours), default=None),
-        "neighbour_slip_m": max((neighbour.max_slip_m for neighbour in neighbours), default=None),
     }
+
+
+def held_by(model: Model) -> tuple[HeldResult, ...] | None:
+    """What each neighbour, stop and tie did in a run of a band; None where there are none."""
+    beside: list[dict[str, Any]] = [
+        {"rotation_ratio": None if one.overturned_at_s is not None else one.rotation_ratio}
+        | {"max_slip_m": one.max_slip_m}
+        for one in _neighbour_results(model)
+    ]
+    held = []
+    for number, record in enumerate(model.run.links):
+        whole = math.isinf(record["broken_at"])
+        held.append(
+            HeldResult(
+                max_force_N=float(record["max_force"]),
+                hits=int(record["hits"]),
+                largest_closing_velocity_m_s=float(record["largest_closing_velocity"]),
+                gap_left_m=_finite(float(record["least_gap"])) if whole else None,
+                broken_at_s=_finite(float(record["broken_at"])),
+                **(beside[number] if number < len(beside) else {}),
+            )
+        )
+    return tuple(held) or None
 
 
 def _indentation(model: Model) -> float | None:

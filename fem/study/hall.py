@@ -310,6 +310,7 @@ def _written(
 ) -> HallResult:
     """The result of a list whose containers are computed; writes the list with its results."""
     table, outcomes, tags = list[Row](), Counter[str](), dict[str, dict[str, Any]]()
+    left: list[Row] = []  #: out of their places, whatever their variations do
     for number, listed in enumerate(hall.rows, start=1):
         shown: Row = {"status": REFUSED, "reason": listed.reason}
         if listed.container is not None:
@@ -319,6 +320,8 @@ def _written(
         row |= {name: shown.get(name) for name in (*RESULT_COLUMNS, "command", *CARD)}
         table.append(row)
         ending = _ending_in(row)
+        if ending == "stood" and _slipped_most(shown) > shown["place_m"]:
+            left.append(row)
         outcomes[row["outcome"] or ending] += row["count"]
         empty = {"tag": row["tag"], "containers": 0, "counts": Counter[str](), "margin": None}
         tag = tags.setdefault(row["tag"], empty)
@@ -343,13 +346,12 @@ def _written(
     stated = f"sep={separator}\n" * (separator not in ",;\t")
     results.write(TABLE, stated + "".join(f"{line}\n" for line in lines))
     results.remove("report.html")  # the command makes another
-    left = [row for row in result.ranked if row["does"] == Level.LEAVES]
     farthest = max(left, key=_slipped_most, default=None)
     tried = (row for row in result.ranked if row["margin_governs"] is not None)
     least = min(tried, key=itemgetter("margin_governs"), default=None)
     known: dict[str, Any] = {
         "left": left,
-        "stand": (Level.UNSURE, Level.ENDS_ROCKING, Level.ONLY_JUST),
+        "Level": Level,
         "farthest": farthest,
         "least": least,
         "slid": farthest and FIGURES[SLIPPED].unit.text(_slipped_most(farthest), figures=2),
@@ -387,7 +389,7 @@ def _governing(hall: Hall, items: Sequence[Item], row_of: Callable[[Item], Row])
         )
         row |= {"does": NONE, "card": ""}
         if verdict.outcome is not None:
-            row |= {"does": in_a_word(verdict), "card": CARD_LINES.join(card_of(run))}
+            row |= {"does": in_a_word(run), "card": CARD_LINES.join(card_of(run))}
         sides.append((item, row | {name: getattr(static.ruling, name) for name in STATIC}))
     item, row = min(sides, key=lambda side: weakness(side[1]))
     rows = [min(rows[motion::motions], key=weakness) for motion in range(motions)]

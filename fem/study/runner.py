@@ -357,7 +357,7 @@ def check_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[R
                 break
             verdict, margin = run.verdict, run.verdict.margin
             row |= {"status": run.status, "sure": verdict.sure, "decided_by": " ".join(verdict.decided_by)}
-            row |= {"does": in_a_word(verdict), "card": CARD_LINES.join(verdict.card)}
+            row |= {"does": in_a_word(run.typed_result), "card": CARD_LINES.join(verdict.card)}
             if margin is not None:
                 tried = margin.largest_tried if margin.factor is None else None
                 governs = margin.governing and margin.governing.factor

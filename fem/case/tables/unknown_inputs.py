@@ -124,6 +124,11 @@ def _joints_mu_static(case: Any, own: float) -> Ends:
     return JOINTS[0] * own, min(q.FRICTION.most or math.inf, JOINTS[1] * own)
 
 
+def _least_in_row(case: Any) -> float:
+    """The least slip over which friction may fall under every container of the row [m]."""
+    return max(map(least_weakening, case.row or (case,)))
+
+
 def _reaching(low: float, high: float) -> Callable[[Any, float], Ends]:
     """Both ends, or the case's own value where it lies beyond."""
     return lambda case, own: (min(low, own), max(high, own))
@@ -259,7 +264,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number(keys.MU_STATIC, "mu_static", "static friction", q.FRICTION, STATIC, power=1.0),
     Number(keys.WEAKENING, "weakening_m", "slip over which friction falls", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_may_fall, power=3.0, between=lambda low, high: WEAKENINGS_BETWEEN_M,
-           alone=_falls, tried_from=least_weakening),
+           alone=_falls, tried_from=_least_in_row),
     Number(keys.STRIBECK, "stribeck_velocity_m_s", "speed at which friction has fallen", q.STRIBECK_VELOCITY,
            _reaching(0.0, STRIBECK_M_S), matters=lambda case: _may_fall(case) or _joints_may_fall(case), power=2.0,
            alone=lambda case: _falls(case) or _joints_fall(case)),
@@ -271,7 +276,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number("joints.weakening_m", "joints_weakening_m", "slip over which friction of the joints falls", q.WEAKENING,
            _reaching(0.0, WEAKENING_M), matters=_joints_may_fall, power=3.0,
            between=lambda low, high: WEAKENINGS_BETWEEN_M, alone=_joints_fall,
-           tried_from=least_weakening),
+           tried_from=_least_in_row),
     Number(keys.JOINTS_DASHPOT, "joints_damping_ratio", "damping of the joints", q.CONTACT_DAMPING,
            _reaching(*JOINTS_DASHPOTS), matters=lambda case: case.container.is_loose),
     Number(keys.CAMBER, "camber_m", "camber of the base", q.CAMBER, _cambers, matters=_may_be_cambered,
@@ -314,7 +319,7 @@ UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
     Number("floor.bearing_strength_Pa", "bearing_strength_Pa", "strength of the floor", q.BEARING_STRENGTH, SLAB),
     Number(keys.MODULUS, "floor_youngs_modulus_Pa", "stiffness of the floor", q.FLOOR_STIFFNESS, SLAB),
     Number(keys.DASHPOT, "damping_ratio", "damping of the contact", q.CONTACT_DAMPING, DAMPING),
-    Number(keys.RESTITUTION, "restitution_over_housner", "rebound at impacts", q.RESTITUTION, _restitutions,
+    Number(keys.RESTITUTION, "restitution_over_housner", "rebound over Housner's", q.RESTITUTION, _restitutions,
            matters=_has_impacts, power=1.0),
     Number("container.damping_ratio", "material_damping_ratio", "damping of the container", q.MATERIAL_DAMPING, DAMPING,
            matters=lambda case: case.solver.model != "rigid"),
@@ -326,6 +331,9 @@ INPUTS = (*(unknown.key for unknown in UNKNOWN), keys.TOLERANCE)
 WORDS = {unknown.key: unknown.words for unknown in UNKNOWN} | {
     keys.TOLERANCE: "energy tolerance of the steps"
 }
+SIGN = "sign of "
+CHOICES = {"flat": "on its whole face", "corners": "on its corners alone"}
+CHOICES |= {"rest": "at rest", "moving": "with the moving floor"}
 QUANTITIES = {unknown.key: unknown.quantity for unknown in UNKNOWN if isinstance(unknown, UnknownNumber)}
 
 #: a range [low, high], or that the value of the case is known
@@ -437,14 +445,24 @@ class UncertaintyTable(CaseTable):
 
 def in_words(values: Mapping[str, Value]) -> str:
     """Values of inputs by dotted key, for people: "kinetic friction 0.3, camber of the base 0.5 mm"."""
-    return ", ".join(f"{WORDS.get(key, key)} {value_in_words(key, value)}" for key, value in values.items())
+    return ", ".join(
+        f"{WORDS[key].removeprefix(SIGN)} reversed"
+        if is_sign(key)
+        else f"{WORDS.get(key, key)} {value_in_words(key, value)}"
+        for key, value in values.items()
+    )
+
+
+def is_sign(key: str) -> bool:
+    """Whether it is varied by its sign alone."""
+    return WORDS.get(key, "").startswith(SIGN)
 
 
 def value_in_words(key: str, value: Value) -> str:
     """A value of an input with its unit, short lengths in mm and pressures in MPa."""
     unit = QUANTITIES[key].unit if key in QUANTITIES else ""
     if isinstance(value, str):
-        return q.with_unit(value, unit)
+        return CHOICES.get(value, value)
     name, factor = {"m": ("mm", 1e3), "Pa": ("MPa", 1e-6)}.get(unit, (unit, 1.0))
     if name == "mm" and abs(value) >= SHORT_LENGTH_M:
         name, factor = unit, 1.0

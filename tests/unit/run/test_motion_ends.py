@@ -167,7 +167,7 @@ def test_a_run_that_ends_in_mid_swing_says_so_and_is_not_sure():
     at_end = abs(cut.history["rotation_rad"][-1]) / cut.slenderness_angle
     assert cut.verdict.still_turned == pytest.approx(at_end, rel=1e-3) and at_end > 0.5
     assert "until its run ends, still rocking" in cut.verdict.first_line
-    assert sure_in_words(cut.verdict) == "stands until its run ends"
+    assert sure_in_words(cut.typed_result) == "stands until its run ends"
     assert any(warning.startswith("the run ends while") for warning in cut.typed_result.warnings)
     assert whole.verdict.still_turned is None
 
