@@ -21,6 +21,7 @@ from fem.run.compute import resolve
 from fem.run.described import governing
 from fem.run.drawn_links import drawn_links
 from fem.run.summary import run_found
+from fem.runtime.units import KILONEWTONS
 
 SLENDER = {"side": "right", "gap_m": 3.0, "stiffness_N_m": 1e8, "width_m": 0.4}
 SLENDER |= {"height_m": 3.0, "mass_kg": 2000.0, "centroid_m": 1.5}
@@ -122,6 +123,39 @@ def test_every_input_of_links_is_varied_alone_and_with_the_others():
     assert alone["stop.mu"] == {0.15, 0.6} and alone["neighbour.mu"] == {0.1, 0.4}
     assert alone["tie.slack_m"] == {0.016, 0.024} and alone["tie.stiffness_N_m"] == {1e6, 4e6}
     assert alone["stop.stiffness_N_m"] == alone["neighbour.stiffness_N_m"] == {5e7, 2e8}
+
+
+def test_each_link_has_its_own_range():
+    case = unsure_of("stop_gap_m", "tie_slack_m", stop=KERBS, tie=TIES, neighbour=[BESIDE])
+    run = fem.compute(case.with_values({"solver.duration_s": 1.0}), band=True, margin=False)
+    band, own = run.verdict.band, run.typed_result
+    beside, stops, ties = band.links[:1], band.links[1:3], band.links[3:]
+    for found, ranges in ((run.verdict.neighbours, beside), (own.stops, stops), (own.ties, ties)):
+        for one, reach in zip(found, ranges, strict=True):
+            for key in ("max_force_N", "hits", "largest_closing_velocity_m_s", "gap_left_m"):
+                members = [member.links[band.links.index(reach)][key] for member in band.members]
+                assert (
+                    reach[key] == (min(members), max(members)) and reach[key][0] <= one[key] <= reach[key][1]
+                )
+    assert band.stop_force_N[1] == max(reach.max_force_N[1] for reach in stops)
+    assert all(reach.max_force_N[0] < reach.max_force_N[1] for reach in band.links)
+    for reach in band.links:  # the words have them
+        assert (
+            f" to {KILONEWTONS.text(reach.max_force_N[1], reach.max_force_N, figures=3).partition(' to ')[2]}"
+            in line(own, "how_far")
+        )
+
+
+def test_a_wider_neighbour_has_an_outcome_in_every_variation():
+    beside = BESIDE | {"width_m": 2.5}
+    case = unsure_of(
+        "weakening_m", neighbour=[beside], **{"contact.weakening_m": 1e-3, "solver.duration_s": 0.5}
+    )
+    members = fem.compute(case, band=True, margin=False).verdict.band.members
+    assert all(member.outcome is not None for member in members)
+    drawn = [member.values.get("contact.weakening_m") for member in members[1:]]
+    least = min(filter(None, drawn))
+    assert least >= 1e-4 * 2.5 * (1.0 - 1e-9)
 
 
 def test_a_gap_that_decides_is_named_and_one_that_is_known_is_not_varied():

@@ -16,7 +16,7 @@ from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
-from fem.results.level import sure_in_words
+from fem.results.level import Level, level_of, sure_in_words
 from fem.results.reader import open_run
 from fem.run.compute import compute
 from fem.run.described import part_covered
@@ -170,6 +170,23 @@ def test_a_run_that_ends_in_mid_swing_says_so_and_is_not_sure():
     assert sure_in_words(cut.typed_result) == "stands until its run ends"
     assert any(warning.startswith("the run ends while") for warning in cut.typed_result.warnings)
     assert whole.verdict.still_turned is None
+
+
+def test_a_run_that_ends_while_the_container_slides_says_so():
+    """Friction of 0.2 takes a box from 1 m/s to rest in 0.51 s."""
+    pushed = {
+        "initial.velocity_m_s": 1.0,
+        "contact.mu_static": 0.2,
+        "contact.mu_kinetic": 0.2,
+        "motion.kind": "none",
+    }
+    case = named_case("least", {"container.width_m": 2.0, "container.height_m": 1.0} | FREE | pushed)
+    until = {0.2: 1.0 - 0.2 * 0.2 * 9.81, 2.0: None}
+    for duration, speed in until.items():
+        run = compute(case.with_values({"solver.duration_s": duration}), band=False, margin=False)
+        assert run.verdict.still_sliding_m_s == (speed and pytest.approx(speed, rel=0.02))
+        assert ("until its run ends, still sliding" in run.verdict.first_line) is bool(speed)
+        assert level_of(run.typed_result) == (Level.CUT if speed else Level.STANDS)
 
 
 @pytest.mark.parametrize(("duration", "said"), [(0.3, "0.33 periods, 0.3 s"), (6.0, "")])

@@ -80,6 +80,7 @@ def boxes(**changed):
 
 #: what levels take beside a run and its variations, and what is said of them
 JUST, APART = {"margin": margin_at(1.04)}, boxes(slips=(0.2, 0.35, 0.0))
+SLIDES, CUT = "slides 200 mm, rocks and stands", "stands until its run ends"
 UNSURE, ENDS = (
     "stands, which is not sure",
     "slides 200 mm, rocks and stands until its run ends, still rocking",
@@ -161,6 +162,16 @@ def test_what_falls_under_a_motion_that_is_hardly_another_one_is_not_called_sure
             "slides 200 mm, rocks and stands, but only just",
         ),
         ({}, {}, {"place_m": 0.3}, "stands", "slides, rocks and stands", "slides 200 mm, rocks and stands"),
+        (FAILED, {}, {"place_m": 0.1}, UNSURE, UNSURE, f"{SLIDES}, which is not sure, out of its place"),
+        ({}, {}, {"still_sliding_m_s": 0.2}, CUT, CUT, f"{SLIDES} until its run ends, still sliding"),
+        (
+            {"outcome": "rock"},
+            {"outcome": "rest"},
+            {},
+            "stands",
+            "rests, may rock",
+            "rests; slip 200 mm; in var",
+        ),
         # boxes of a stack that slide on one another
         ({}, {"boxes": APART}, {"place_m": 0.3}, "leaves its place", "leaves its place", BOX),
         ({}, {"boxes": APART}, {}, "stands", "slides, rocks and stands", BETWEEN),
@@ -193,6 +204,20 @@ def test_the_first_two_lines_have_at_most_45_words_none_of_which_a_client_does_n
             words = " ".join(card_of(said)[:2])
             assert len(words.split()) <= 45, words
             assert not re.search(r"multiple|draw|what is not known|\bhop|slab|regime", words)
+
+
+def test_all_that_does_not_stand_is_counted_and_what_falls_has_no_place_to_leave():
+    both = RunResult(status="completed", verdict=verdict((HALF, FELL), (STIFF, CRUSHED), (SLOW, {})))
+    assert line(both, "does").startswith(
+        "may overturn or destroy a corner: 2 of 3 variations do; as given it"
+    )
+    fell = FELL | {"fell_box": 2, "boxes": boxes(slips=(0.2, 0.8, 0.0))}
+    judged_so = verdict((HALF, {"boxes": boxes(slips=(0.2, 1.2, 0.0))}), **fell)
+    result = RunResult(status="completed", verdict=replace(judged_so, place_m=1.0))
+    assert (
+        line(result, "sureness")
+        == "sure: it overturns in the one variation of its inputs, and in the same way"
+    )
 
 
 @pytest.mark.parametrize(
