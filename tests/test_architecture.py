@@ -132,13 +132,13 @@ BUDGET = {
     "seismic": ("fem/seismic", 2_140, 60),
     "solid": ("fem/solid", 1_669, 60),
     "model": ("fem/model", 3_823, 116),
-    "run": ("fem/run", 4_521, 141),
+    "run": ("fem/run", 4_520, 141),
     "pages": ("fem/html fem/figures fem/render fem/report", 4_870, 127),
     "study": ("fem/study fem/response", 7_187, 198),
     "site": ("fem/site", 4_388, 113),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_804, 42),
-    "product": ("mesh contact fem", 52_426, 1_540),
-    "tests": ("tests", 36_327, 2_139),
+    "product": ("mesh contact fem", 52_425, 1_540),
+    "tests": ("tests", 36_403, 2_143),
 }
 
 

@@ -86,7 +86,7 @@ UNSURE, ENDS = (
     "slides 200 mm, rocks and stands until its run ends, still rocking",
 )
 LEFT = "leaves its place: slides 200 mm, beyond its width, 100 mm; it stands, but only just"
-MAY = "may leave its place: slides 200 (200 to 400) mm, in variations beyond its width, 300 mm; it stands"
+MAY = "may leave its place: slides 200 (200 to 400) mm, in variations beyond its width, 300 mm"
 OUT = "slides 200 (200 to 400) mm, rocks and stands, but only just, in variations out of its place"
 BETWEEN = "slides 200 mm, rocks and stands; box 2 slides 350 mm on box 1"
 BOX = "leaves its place: box 2 slides 350 mm on box 1, beyond its width, 300 mm; it stands"
