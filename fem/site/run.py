@@ -179,26 +179,25 @@ def answered(
     names = ["the set", "its repetitions", *[FURTHER_ONES] * stages.has_further]
     names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
     told = NamedStages(names, runner.reporter)
-    begun: list[str] = []  #: the stage whose runs follow
+    stage = ""  #: whose runs follow
     left = 0  #: runs of the set at other factors that may still be asked for
 
     def batches() -> Iterator[Sequence[RunKey]]:
-        nonlocal left
+        nonlocal stage, left
         for name, keys in zip(names, stages.of_the_answer(runner), strict=False):
-            begun[:] = [name]
+            stage = name
             yield keys
             if varied and now().answer == NOT_FULFILLED:
                 return
         if scans:
-            begun.clear()
-            left = stages.most_scanned
+            stage, left = "", stages.most_scanned
             told.begin(OTHER_FACTORS, left, up_to=True)
             yield from stages.of_the_margin()
 
-    def begin(count: int) -> None:
+    def begin(what: str, count: int) -> None:
         nonlocal left
-        if begun:
-            told.begin(begun.pop(), count)
+        if stage:
+            told.begin(stage, count)
         left = max(left - count, 0)
 
     def note(line: str) -> None:
