@@ -157,8 +157,7 @@ class Collection:
 
     def hint(self, name: str) -> str:
         """The one that may have been meant, and all there are."""
-        near = did_you_mean(name, self.names)
-        return f"{'; ' + near if near else ''} (shipped: {', '.join(self.names)})"
+        return f"{did_you_mean(name, self.names)} (shipped: {', '.join(self.names)})"
 
 
 CASES = Collection("case", "case/shipped")

@@ -189,8 +189,7 @@ def _quantity(key: str) -> Quantity:
     if table in TABLES:
         fields = known_keys(TABLES[table])
         if name not in fields:
-            near = did_you_mean(name, fields)
-            raise CaseError(f"--over {key}: no such key of a site file{'; ' + near if near else ''}")
+            raise CaseError(f"--over {key}: no such key of a site file{did_you_mean(name, fields)}")
         field = fields[name]
     else:
         try:

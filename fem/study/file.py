@@ -17,7 +17,7 @@ from fem.case.overrides import keys_in_effect
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import SLIP_LIMIT
 from fem.case.tables.table import CaseTable, OneLine
-from fem.case.validation import CaseError, problem_lines, read_table
+from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
 from fem.runtime.intervals import least_draws
 from fem.runtime.left import left_words
 from fem.study.axes import (
@@ -27,7 +27,6 @@ from fem.study.axes import (
     check_varied,
     field_of,
     first_motion,
-    hint,
     read_axis,
     set_axis,
 )
@@ -75,7 +74,7 @@ def split_tables(
             raise CaseError(f"[{name}] {words}")
         if name not in known:
             raise CaseError(
-                f"[{name}] unknown table{hint(name, known)} (known: {', '.join(known)}); "
+                f"[{name}] unknown table{did_you_mean(name, known)} (known: {', '.join(known)}); "
                 'dotted keys stand in quotes, such as "contact.mu_static"'
             )
     for key in heading:
@@ -252,7 +251,9 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     if threshold is not None:
         named, along = f"[threshold] axis {threshold.axis!r}", known.get(threshold.axis)
         if along is None:
-            raise CaseError(f"{named} is none of the axes{hint(threshold.axis, known)} (axes: {axis_list})")
+            raise CaseError(
+                f"{named} is none of the axes{did_you_mean(threshold.axis, known)} (axes: {axis_list})"
+            )
         if not along.is_numeric:
             raise CaseError(f"{named} needs two or more numbers that rise")
         if any(isinstance(value, int) for value in along.values):
@@ -286,7 +287,9 @@ def _maps(content: Mapping[str, Any], known: Mapping[str, Axis], axis_list: str)
     maps = read_as("maps", MapChoice, content)
     for key in (maps.x, maps.y, *maps.fixed):
         if key is not None and key not in known:
-            raise CaseError(f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {axis_list})")
+            raise CaseError(
+                f"[maps] {key!r} is none of the axes{did_you_mean(key, known)} (axes: {axis_list})"
+            )
     for key, value in maps.fixed.items():
         if value not in known[key].values:
             listed = ", ".join(map(str, known[key].values))
