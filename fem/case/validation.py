@@ -6,8 +6,8 @@ keys that could be read. Each reason is one line: table, key, what is required, 
 
 import datetime
 import difflib
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -30,6 +30,15 @@ ModelT = TypeVar("ModelT", bound=BaseModel)
 
 class CaseError(ValueError):
     """A case that cannot be used; the message has one line for each reason."""
+
+
+@contextmanager
+def told_as(before: str, after: str = "") -> Iterator[None]:
+    """Raise a ValueError of the block as a CaseError, its words between these."""
+    try:
+        yield
+    except ValueError as error:
+        raise CaseError(f"{before}{error}{after}") from None
 
 
 def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case, CaseError
 from fem.case.tables.run_tables import StaticTable
+from fem.case.validation import told_as
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
 from fem.seismic.body import LooseBody, utilisation
@@ -384,11 +385,9 @@ def wind_check(case: Case, mesh: ContainerMesh, static: StaticChecks) -> ActionC
         mu_kinetic=case.contact.mu_kinetic,
         round=case.container.is_round,
     )
-    try:
+    with told_as("[wind] ", "; leave the table out"):
         pressure, _ = pressure_of(case.wind, mesh.height)
         tilts, slides = wind_rows(body, pressure, gamma_mu=case.wind.gamma_mu if case.wind else 1.0)
-    except ValueError as error:
-        raise CaseError(f"[wind] {error}; leave the table out") from None
     overturning, sliding = (
         CheckResult(
             demand=row.demand, capacity=row.capacity, unit=row.unit.replace(" ", ""), clause=row.source

@@ -7,7 +7,7 @@ import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.modes import ROCKING
-from fem.case.validation import CaseError
+from fem.case.validation import told_as
 from fem.results.outcome import least_slide
 from fem.seismic.action import SiteAction
 from fem.seismic.body import FloorAction, LooseBody, MethodQuantity, MethodRow, length_in_words
@@ -82,10 +82,8 @@ def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | 
     Raises:
         CaseError: the container is higher than the rule for the wind holds.
     """
-    try:
+    with told_as("[wind] ", "; leave the table out"):
         _, rows = _under_wind(bodies, inputs)
-    except ValueError as error:
-        raise CaseError(f"[wind] {error}; leave the table out") from None
     return max((row.utilisation for row in rows), default=None)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from fem.case.data_files import split_channel
 from fem.case.plausible import doubts
 from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
-from fem.case.validation import CaseError
+from fem.case.validation import CaseError, told_as
 from fem.records.files import read_record
 from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, cut_together
@@ -66,7 +66,7 @@ def ground_motions(
     """
     table, target = request.motions, request.floor_target or request.action
     if table.source == "artificial":
-        try:
+        with told_as("[motions] "):
             return artificial_set(
                 target,
                 count=table.count,
@@ -76,8 +76,6 @@ def ground_motions(
                 vertical=table.vertical,
                 second=table.second_component,
             )
-        except ValueError as error:
-            raise CaseError(f"[motions] {error}") from None
     records = [
         _record(request, number, names, allow_outside)
         for number, names in enumerate(table.files or [], start=1)

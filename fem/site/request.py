@@ -16,7 +16,7 @@ from fem.case.tables import quantities as q
 from fem.case.tables.run_tables import DocumentTable, WindTable
 from fem.case.tables.table import CaseTable, OneLine, case_key, optional_key
 from fem.case.toml import toml_document
-from fem.case.validation import CaseError
+from fem.case.validation import CaseError, told_as
 from fem.runtime.user_files import leads_out, real_path
 from fem.seismic.action import (
     GERMAN_ZONES,
@@ -130,10 +130,8 @@ class SiteRequest:
         Raises:
             CaseError: a ground that the spectrum does not have.
         """
-        try:
+        with told_as("[site] "):
             return _action_of(self.site, self.element_factor)
-        except ValueError as error:
-            raise CaseError(f"[site] {error}") from None
 
     @property
     def element_factor(self) -> float:
@@ -174,7 +172,7 @@ class SiteRequest:
         """
         if (floor := self.floor_spectrum) is None:
             return None
-        try:
+        with told_as("[floor_spectrum] "):
             points = floor.model_dump() if floor.file is None else read_spectrum(self._beside(floor.file))
             return FloorSpectrum(
                 periods=tuple(points[PERIOD]),
@@ -182,8 +180,6 @@ class SiteRequest:
                 vertical_accelerations=tuple(points.get(VERTICAL) or ()),
                 ground=self.action,
             )
-        except ValueError as error:
-            raise CaseError(f"[floor_spectrum] {error}") from None
 
     @property
     def point_files(self) -> dict[str, str]:
@@ -228,10 +224,8 @@ class SiteRequest:
         """
         if (wind := self.wind) is None:
             return None
-        try:
+        with told_as("[wind] "):
             return pressure_of(wind, self.container.container.total_height)
-        except ValueError as error:
-            raise CaseError(f"[wind] {error}") from None
 
     @cached_property
     def inputs(self) -> SiteInputs:

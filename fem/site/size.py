@@ -17,7 +17,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 
 from fem.case.tables.quantities import Quantity
-from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
+from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of, told_as
 from fem.html.page import text_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
@@ -34,7 +34,7 @@ from fem.site.result import OF_ANSWER, SiteAnswer, SizeResult
 from fem.site.run import RUNS, answered, copy_files, set_of, site_hash, texts_of, write_floors
 from fem.site.runs import COLUMNS, bodies_of
 from fem.site.stages import Stages
-from fem.study.axes import AxisError, field_of
+from fem.study.axes import field_of
 from fem.study.derived import value_in
 from fem.study.driver import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import Runner
@@ -133,10 +133,8 @@ def size_axis(
             f"--over {key}: the horizontal motion of the floor is given, which [site] does not change"
         )
     for name, bound in (("--from", low), ("--to", high)):
-        try:
+        with told_as(f"{name}: {key} "):
             quantity.check(bound)
-        except ValueError as error:
-            raise CaseError(f"{name}: {key} {error}") from None
     if count is not None and not 2 <= count <= MOST_COUNT:
         raise CaseError(f"--count must be 2 to {MOST_COUNT}, got {count}")
     values = spaced(low, high, count or COUNT)
@@ -192,10 +190,8 @@ def _quantity(key: str) -> Quantity:
             raise CaseError(f"--over {key}: no such key of a site file{did_you_mean(name, fields)}")
         field = fields[name]
     else:
-        try:
+        with told_as(f"--over {key}: "):
             field = field_of(key)
-        except AxisError as error:
-            raise CaseError(f"--over {key}: {error}") from None
     quantity = quantity_of(field.annotation, field.metadata)
     if quantity is None or "list" in str(field.annotation):
         raise CaseError(f"--over {key}: it holds no single number; try one of {', '.join(KNOWN)}")
