@@ -229,12 +229,6 @@ def orbit_of(status: str, reason: str | None, *periods: list[Any]) -> Orbit:
     )
 
 
-def step_until(driven: Model, end: float) -> str:
-    """Step to an instant [s] that is a break of the run, or to the fall; returns the status."""
-    code, _ = step_to(driven, end)
-    return STATUSES[code]
-
-
 def _open_ledger(driven: Model) -> None:
     """Reset the energy balance."""
     driven.run.ledger[:] = 0.0
@@ -243,7 +237,7 @@ def _open_ledger(driven: Model) -> None:
 
 
 def step_to(driven: Model, end: float) -> tuple[int, FloatArray]:
-    """Step to an instant; returns the code of the stepping and the samples on the way."""
+    """Step to an instant [s] that is a break of the run, or to a fall; the code, and the samples on the way."""
     body, run, clock = driven.body, driven.run, driven.run.clock[0]
     if not isinstance(body, ModalBody):
         raise TypeError("a response curve is followed with the compiled models")  # the request excludes it

@@ -32,6 +32,7 @@ from fem.response.lasting import (
     unpacked,
 )
 from fem.response.orbit import (
+    STATUSES,
     Decay,
     Orbit,
     Progress,
@@ -43,7 +44,6 @@ from fem.response.orbit import (
     no_progress,
     orbit_of,
     step_to,
-    step_until,
     stop_drive,
 )
 from fem.response.request import SAMPLES_PER_PERIOD, TURN, ResponseRequest
@@ -155,7 +155,7 @@ def follow_point(
     at_section, status = before, "completed"
     if at_section is None:
         at_section, until = begin_drive(case, container)
-        status = step_until(at_section, until) if until > 0.0 else status
+        status = STATUSES[step_to(at_section, until)[0]] if until > 0.0 else status
     if status == "completed":
         on_floor = carry_drive(case, container, at_section)
         driven, orbit = follow_periods(on_floor, request.settle, progress=progress)
