@@ -236,12 +236,9 @@ def margin_factor(limits: LimitsTable, runs: Mapping[RunKey, SiteRun]) -> float 
 
 def first_overturning(runs: Mapping[RunKey, SiteRun]) -> float | None:
     """The least factor on the motions at which a run overturned, of those tried; None: none did."""
-    factors = [
-        key.factor
-        for key, run in runs.items()
-        if key.stage in (SET, SCAN, REFINED) and run.outcome == Outcome.OVERTURNED
-    ]
-    return min(factors, default=None)
+    by_factor = runs_by_factor(runs, SET, SCAN, REFINED)
+    fell = (factor for factor in by_factor if rule_of(groups_of(by_factor[factor])).overturned)
+    return min(fell, default=None)
 
 
 def scan_of(runs: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
