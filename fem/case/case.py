@@ -433,7 +433,7 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
 def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[str, Any]) -> Case:
     """The case that a neighbour of a case names; CaseError: not to be used, with links, on another floor."""
     place = f"{origin.place}: [neighbour] "
-    try:
+    with told_as(place, of=CaseError):
         anywhere = origin.allow_outside or "neighbour.case" in origin.trusted
         source = CASES.beside(name, origin, anywhere=anywhere)
         data = parse_case(source)
@@ -442,8 +442,6 @@ def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[st
             replace(source, trusted=frozenset(data_files.FILE_KEYS)),
             {},
         )
-    except CaseError as error:
-        raise CaseError("\n".join(f"{place}{line}" for line in str(error).splitlines())) from error
     if held := [f"[[{key}]]" for key in ROWS if data.get(key)]:
         raise CaseError(
             f"{place}case = {name!r} has {' and '.join(held)} of its own; a row takes its container alone: name a "

@@ -33,12 +33,12 @@ class CaseError(ValueError):
 
 
 @contextmanager
-def told_as(before: str, after: str = "") -> Iterator[None]:
-    """Raise a ValueError of the block as a CaseError, its words between these."""
+def told_as(before: str, after: str = "", *, of: type[ValueError] = ValueError) -> Iterator[None]:
+    """Raise such an error of the block as a CaseError, each of its lines between these words."""
     try:
         yield
-    except ValueError as error:
-        raise CaseError(f"{before}{error}{after}") from None
+    except of as error:
+        raise CaseError("\n".join(f"{before}{line}{after}" for line in str(error).splitlines())) from None
 
 
 def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:

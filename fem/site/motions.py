@@ -159,7 +159,7 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
     given = dict(zip("hvt", names, strict=False))
     if not request.motions.vertical:
         given.pop("v", None)
-    try:
+    with told_as("[motions] files: ", of=RecordError):
         for letter, name in given.items():
             record, channel = _read(request, name, allow_outside)
             records.append(record)
@@ -173,8 +173,6 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
             scaled = request.motions.source != "floor"
             said = doubts(record.name, component, component, scale=1.0, confirmed=scaled)
             noted += [f"{record.name}: {note}" for note in (*component.notes, *said)]
-    except RecordError as error:
-        raise CaseError(f"[motions] files: {error}") from None
     notes = (*noted, *_baselines_in_words(request, given, records, components))
     if len(set(map(id, components))) < len(components):
         raise CaseError(f"[motions] files: a component of {records[0].name} is named for two directions")
@@ -206,12 +204,10 @@ def _baselines_in_words(
     for letter, record, component in zip(letters, records, components, strict=True):
         if letter == "t" and table.second_component == 0.0:
             continue
-        try:
+        with told_as("[motions] files: ", of=RecordError):
             change = stated_baseline(
                 record.name, component, MATCHED, allowed=bool(table.allow_baseline), way_out=BASELINE
             )
-        except RecordError as error:
-            raise CaseError(f"[motions] files: {error}") from None
         if change:
             notes[f"{record.name}: matching removes a baseline; {change}"] = None
     return tuple(notes)

@@ -17,7 +17,7 @@ from fem.case.overrides import keys_in_effect
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import SLIP_LIMIT
 from fem.case.tables.table import CaseTable, OneLine
-from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
+from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table, told_as
 from fem.runtime.intervals import least_draws
 from fem.runtime.left import left_words
 from fem.study.axes import (
@@ -49,10 +49,8 @@ ReadT = TypeVar("ReadT")
 def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT]) -> StudyT:
     """Parse the file of a study, and have `read` make it; CaseError with a line for each reason why not."""
     data = parse_case(origin)
-    try:
+    with told_as(f"{origin.place}: ", of=CaseError):
         return read(data, origin)
-    except CaseError as error:
-        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
 
 
 def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:
