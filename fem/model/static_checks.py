@@ -21,6 +21,7 @@ from fem.case.tables.run_tables import StaticTable
 from fem.case.validation import told_as
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
+from fem.runtime.units import finite
 from fem.seismic.body import LooseBody, utilisation
 from fem.seismic.wind import STABILISING, pressure_of, wind_rows
 from mesh.container import ContainerMesh
@@ -103,8 +104,8 @@ class ActionCheck:
         return ActionResult(
             base_shear_N=self.sliding.demand,
             tilting_moment_Nm=self.overturning.demand,
-            utilisation_sliding=_finite(self.sliding.utilisation),
-            utilisation_overturning=_finite(self.overturning.utilisation),
+            utilisation_sliding=finite(self.sliding.utilisation),
+            utilisation_overturning=finite(self.overturning.utilisation),
             least_weight_N=self.least_weight,
         )
 
@@ -401,7 +402,3 @@ def distance_beside(mesh: ContainerMesh) -> float:
     """Distance of the mass centre from the middle of the base [m]; 0 within rounding."""
     beside = abs(mesh.centroid[0])
     return beside if beside > ROUNDING * mesh.width else 0.0
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

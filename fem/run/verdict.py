@@ -37,7 +37,7 @@ from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome, least_slide
 from fem.results.run_result import Energy, JointDemand, NeighbourResult, Numerics, Verdict, to_overturn
-from fem.runtime.units import SECONDS
+from fem.runtime.units import SECONDS, finite
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05  #: of a first impact, above which other energy entered
@@ -135,7 +135,7 @@ def verdict_from(
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
     lowest = float(run.old.boxes[0, ROTATION] if len(run.old.boxes) else run.old.pose[ROTATION])
     turned = run.old.boxes[:, ROTATION] if boxes else run.old.pose[ROTATION]
-    at_rest = _finite(float(run.clock[0].rest_since))
+    at_rest = finite(float(run.clock[0].rest_since))
     turns = track.left_open + track.right_open > 0 and at_rest is None  # about one side
     swing = float(np.abs(turned).max()) / angle if turns and not fell else 0.0
     neighbours = _neighbour_results(model)
@@ -182,7 +182,7 @@ def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
     """The figures that the stepper records, by key; of an event that has not happened, None."""
     sources = {key: figure.of.split(".") for key, figure in figures.items() if figure.of}
     values = {key: getattr(records[record], name) for key, (record, name) in sources.items()}
-    return {key: _finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
+    return {key: finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
 
 
 def _neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
@@ -199,7 +199,7 @@ def _neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
                 max_slip_m=joint.max_slip,
                 residual_slip_m=joint.slip,
                 max_uplift_m=joint.max_opening,
-                overturned_at_s=_finite(joint.fell_at),
+                overturned_at_s=finite(joint.fell_at),
                 hits=gap.hits,
                 max_force_N=gap.max_force,
                 largest_closing_velocity_m_s=gap.largest_closing_velocity,
@@ -245,7 +245,7 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
         },
         "link_hits": int(links["hits"].sum()),
         "link_velocity_m_s": float(links["largest_closing_velocity"].max()),
-        "link_broken_at_s": _finite(float(links["broken_at"].min())),
+        "link_broken_at_s": finite(float(links["broken_at"].min())),
         "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
         "neighbour_rotation_ratio": max((neighbour.rotation_ratio for neighbour in neighbours), default=None),
         "neighbour_slip_m": max((neighbour.max_slip_m for neighbour in neighbours), default=None),
@@ -344,10 +344,6 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,
     )
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def end_of_drive(model: Model) -> float:

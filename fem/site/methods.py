@@ -1,6 +1,5 @@
 """The simplified methods for the container of a site, beside the results of the runs for the same action."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,6 +8,7 @@ from contact.reference.rigid_block import RigidBlock
 from contact.stepping.modes import ROCKING
 from fem.case.validation import told_as
 from fem.results.outcome import least_slide
+from fem.runtime.units import finite
 from fem.seismic.action import SiteAction
 from fem.seismic.body import FloorAction, LooseBody, MethodQuantity, MethodRow, length_in_words
 from fem.seismic.methods import methods_of, rows_with_factors
@@ -182,15 +182,11 @@ def _compared(*, refused: bool, failed: bool) -> str:
 
 def _result(row: MethodRow, body: SiteBody, found: tuple[str, str], factor: float | None) -> SiteMethod:
     return SiteMethod(
-        **vars(row) | {"quantity": row.quantity.value, "demand": _finite(row.demand)},
+        **vars(row) | {"quantity": row.quantity.value, "demand": finite(row.demand)},
         mass=body.mass,
         elevation=body.elevation,
-        utilisation=_finite(row.utilisation),
+        utilisation=finite(row.utilisation),
         found=found[0],
         compared=found[1],
         factor=factor,
     )
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
