@@ -41,7 +41,6 @@ from fem.response.orbit import (
     classify,
     driven_model,
     follow_periods,
-    no_progress,
     orbit_of,
     step_to,
     stop_drive,
@@ -99,7 +98,7 @@ def computed(
     records: Sequence[PointRecord],
     before: Model | None,
     control: Control,
-    progress: Progress = no_progress,
+    progress: Progress = None,
 ) -> tuple[list[PointRecord], Model | None]:
     """The points of a task, and the motion to carry on; None where there is none.
 
@@ -149,7 +148,7 @@ def follow_point(
     container: Container,
     task: Task,
     before: Model | None = None,
-    progress: Progress = no_progress,
+    progress: Progress = None,
 ) -> tuple[PointRecord, Model | None]:
     """One frequency, from the motion before or as its case begins; returns the point and the motion to carry on."""
     at_section, status = before, "completed"
