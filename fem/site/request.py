@@ -130,8 +130,37 @@ class SiteRequest:
         Raises:
             CaseError: a ground that the spectrum does not have.
         """
+        site, reference = self.site, self.site.reference_acceleration_m_s2
         with told_as("[site] "):
-            return _action_of(self.site, self.element_factor)
+            if site.spectrum == "EN1998-1":
+                shape = eurocode_shape(site.type or 1, site.ground or "")
+            elif site.spectrum == "DIN-NA-2011":
+                shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
+                reference = GERMAN_ZONES[site.zone or 0]
+            elif site.spectrum == "second-generation":
+                plateau = site.plateau_m_s2 or 0.0
+                reference = plateau / site.plateau_over_peak
+                shape = second_generation_shape(
+                    plateau=plateau,
+                    one_second=site.one_second_m_s2 or 0.0,
+                    periods=_three(site.end_periods_s),
+                    vertical_ratio=site.vertical_ratio or 0.0,
+                    ratio=site.plateau_over_peak,
+                )
+            else:
+                shape = SpectrumShape(
+                    soil_factor=site.soil_factor or 0.0,
+                    corner_periods=_three(site.corner_periods_s),
+                    vertical_ratio=site.vertical_ratio or 0.0,
+                    vertical_corner_periods=_three(site.vertical_corner_periods_s),
+                )
+            return SiteAction(
+                shape=shape,
+                reference_acceleration=reference or 0.0,
+                importance_factor=site.importance_factor,
+                element_importance_factor=self.element_factor,
+                topographic_factor=site.topographic_factor,
+            )
 
     @property
     def element_factor(self) -> float:
@@ -180,12 +209,6 @@ class SiteRequest:
                 vertical_accelerations=tuple(points.get(VERTICAL) or ()),
                 ground=self.action,
             )
-
-    @property
-    def point_files(self) -> dict[str, str]:
-        """Names of the files of points beside the site file, by the tables that name them."""
-        floor = self.floor_spectrum
-        return {"floor_spectrum": floor.file} if floor is not None and floor.file is not None else {}
 
     @property
     def frictions(self) -> list[tuple[float, float]]:
@@ -384,40 +407,6 @@ def _check(request: SiteRequest) -> None:
         )
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
-
-
-def _action_of(site: SiteTable, element_factor: float) -> SiteAction:
-    """The action of a site; ValueError for a ground that the spectrum does not have."""
-    reference = site.reference_acceleration_m_s2
-    if site.spectrum == "EN1998-1":
-        shape = eurocode_shape(site.type or 1, site.ground or "")
-    elif site.spectrum == "DIN-NA-2011":
-        shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
-        reference = GERMAN_ZONES[site.zone or 0]
-    elif site.spectrum == "second-generation":
-        plateau = site.plateau_m_s2 or 0.0
-        reference = plateau / site.plateau_over_peak
-        shape = second_generation_shape(
-            plateau=plateau,
-            one_second=site.one_second_m_s2 or 0.0,
-            periods=_three(site.end_periods_s),
-            vertical_ratio=site.vertical_ratio or 0.0,
-            ratio=site.plateau_over_peak,
-        )
-    else:
-        shape = SpectrumShape(
-            soil_factor=site.soil_factor or 0.0,
-            corner_periods=_three(site.corner_periods_s),
-            vertical_ratio=site.vertical_ratio or 0.0,
-            vertical_corner_periods=_three(site.vertical_corner_periods_s),
-        )
-    return SiteAction(
-        shape=shape,
-        reference_acceleration=reference or 0.0,
-        importance_factor=site.importance_factor,
-        element_importance_factor=element_factor,
-        topographic_factor=site.topographic_factor,
-    )
 
 
 def _three(values: list[float] | None) -> tuple[float, float, float]:

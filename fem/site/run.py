@@ -330,18 +330,19 @@ def confirmed(
 
 
 def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
-    """The site file, its container, and the files of points that it names, by their names in a folder of results.
+    """The site file, its container, and the file of points that it names, by their names in a folder of results.
 
     The site file names what lies beside it there, so that it can be repeated from there alone.
 
     Raises:
-        CaseError: a file of points is named like a result, which would replace it.
+        CaseError: the file of points is named like a result, which would replace it.
         ValueError: it cannot be read.
     """
     own = {"site.toml": _beside_its_files(request), CONTAINER: request.container.text}
-    for table, name in request.point_files.items():
-        require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
-    return own | {name: spectrum_text(request.origin.folder / name) for name in request.point_files.values()}
+    if (floor := request.floor_spectrum) is None or floor.file is None:
+        return own
+    require_free_name(place_of("floor_spectrum.file"), PurePath(floor.file), kind, own)
+    return own | {floor.file: spectrum_text(request.origin.folder / floor.file)}
 
 
 def copy_files(request: SiteRequest, folder: Path) -> None:
