@@ -23,6 +23,7 @@ def site_methods(
     *,
     bodies: Sequence[SiteBody],
     inputs: SiteInputs,
+    limits: LimitsTable,
     site: SiteAction,
     motions: Sequence[SiteMotion],
     periods_s: Sequence[float],
@@ -39,11 +40,6 @@ def site_methods(
         floor: of the building; None: on the ground.
         runs: those of the set count, with both signs.
     """
-    limits = LimitsTable(
-        rotation_ratio=inputs.rotation_ratio_limit,
-        single_rotation_ratio=inputs.single_rotation_ratio_limit,
-        slip_m=inputs.slip_limit_m,
-    )
     action = floor_action(site, motions, periods_s, floor)
     rows = []
     for body in bodies:

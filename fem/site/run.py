@@ -260,6 +260,7 @@ def _result(stages: Stages, motions: MotionSet, answer: SiteAnswer | None) -> Si
         methods=site_methods(
             bodies=stages.bodies,
             inputs=request.inputs,
+            limits=request.limits,
             site=request.action,
             motions=motions.motions,
             periods_s=action.periods_s,
