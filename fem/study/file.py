@@ -320,7 +320,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     def drawn_key(key: str, value: Any) -> RandomQuantity:
         check_key(key)
         quantity = read_random(key, value)
-        if key in keys and not quantity.relative:
+        if key in keys and not quantity.spread.relative:
             raise AxisError("is an axis as well; give the scatter about its values with relative = true")
         return quantity
 
@@ -342,7 +342,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         raise CaseError(f'[set] "solver.model" must be "rigid" or "reduced": {why}')
     varied = [*keys, *(quantity.key for quantity in random)]
     _require_verticals(motions, varied, base)
-    drawn = [quantity.key for quantity in random if not quantity.relative]
+    drawn = [quantity.key for quantity in random if not quantity.spread.relative]
     require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
     draws, replicates = heading.draws, 1 if heading.sampling == "independent" else heading.replicates
     replicates = len(motions.values) if motions else replicates
