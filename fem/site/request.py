@@ -117,12 +117,6 @@ class SiteRequest:
         """File stem, or the name of the shipped file."""
         return self.origin.name
 
-    @property
-    def portable(self) -> dict[str, Any]:
-        """The tables, with records by their names alone: the same wherever these lie."""
-        files = [[Path(name).name for name in pair] for pair in self.motions.files or ()]
-        return {**self.data, **({"motions": {**self.data["motions"], "files": files}} if files else {})}
-
     @cached_property
     def action(self) -> SiteAction:
         """The action of the site.

@@ -108,7 +108,9 @@ def run_site(
 def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     """Equal for requests that give the same result."""
     for_people = ("title", "document", "sources", "container")
-    data = {key: value for key, value in request.portable.items() if key not in for_people}
+    data = {key: value for key, value in request.data.items() if key not in for_people}
+    if files := [[Path(name).name for name in pair] for pair in request.motions.files or ()]:
+        data["motions"] = {**data["motions"], "files": files}  # by their names alone, wherever these lie
     digest = hashlib.sha256()
     for motion in ground:
         for component in motion.components:
