@@ -26,7 +26,7 @@ from fem.case.tables.neighbours import CORNER_PATCH, beside, case_of
 from fem.case.tables.problem import Problem, broken, outside_the_folder, stays_in_the_folder
 from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_document
-from fem.case.validation import CaseError, problem_lines, read_case_tables
+from fem.case.validation import CaseError, problem_lines, read_case_tables, told_as
 from fem.records.columns import given_record, written
 from fem.records.record import Direction, Record
 
@@ -266,10 +266,8 @@ class Case(CaseContent):
         values: dict[Direction, npt.ArrayLike] = {"horizontal": acceleration_m_s2}
         if vertical_m_s2 is not None:
             values["vertical"] = vertical_m_s2
-        try:
+        with told_as("with_motion: "):
             record = given_record(np.asarray(time_s), {name: np.asarray(a) for name, a in values.items()})
-        except ValueError as error:
-            raise CaseError(f"with_motion: {error}") from None
         data = {key: value for key, value in self.given().items() if key not in ("motion", "vertical")}
         data["motion"] = {"kind": "table", "file": record.name, "start": self.motion.start}
         if vertical_m_s2 is not None:
@@ -435,7 +433,7 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
 def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[str, Any]) -> Case:
     """The case that a neighbour of a case names; CaseError: not to be used, with links, on another floor."""
     place = f"{origin.place}: [neighbour] "
-    try:
+    with told_as(place, of=CaseError):
         anywhere = origin.allow_outside or "neighbour.case" in origin.trusted
         source = CASES.beside(name, origin, anywhere=anywhere)
         data = parse_case(source)
@@ -444,8 +442,6 @@ def _neighbour_case(name: str, case: Case, origin: Origin, overrides: Mapping[st
             replace(source, trusted=frozenset(data_files.FILE_KEYS)),
             {},
         )
-    except CaseError as error:
-        raise CaseError("\n".join(f"{place}{line}" for line in str(error).splitlines())) from error
     if held := [f"[[{key}]]" for key in ROWS if data.get(key)]:
         raise CaseError(
             f"{place}case = {name!r} has {' and '.join(held)} of its own; a row takes its container alone: name a "

@@ -4,7 +4,7 @@ import math
 from functools import partial
 from typing import Any
 
-from fem.case.columns import history_width
+from fem.case.columns import history_columns
 from fem.case.tables import quantities as q
 from fem.case.tables.boxes import BOX_RULES, JOINT_RULES, WEAKENING_RULES, plan_share
 from fem.case.tables.container_tables import MASSES
@@ -81,7 +81,7 @@ def _begins_behind_the_run(case: Any, table: str) -> str:
 def _too_many_samples(case: Any) -> str:
     """Why the history takes more than memory has."""
     samples = longest_time(case) / float(case.output.history_s) + 1.0
-    size = 8.0 * history_width(case)  # bytes of a sample
+    size = 8.0 * len(history_columns(case))  # bytes of a sample
     most = min(MOST_SAMPLES, MOST_HISTORY / size)
     if samples <= most:
         return ""

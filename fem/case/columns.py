@@ -117,11 +117,6 @@ ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", 
 GROUPS = (ALWAYS, CRUSHING, IMPACTS, VERTICAL, JOINTS, BOXES, STOPS, TIES, NEIGHBOURS, ANALYTIC)
 
 
-def history_width(case: Any) -> int:
-    """How many columns the history of a case has, which may be read in part."""
-    return len(history_columns(case))
-
-
 def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:
     """The columns of the history of a case, or of what could be read of it, in their order.
 

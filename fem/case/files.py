@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
-from fem.case.validation import CaseError, did_you_mean
+from fem.case.validation import CaseError, did_you_mean, told_as
 from fem.runtime.user_files import leads_out, read_regular, real_path
 
 if TYPE_CHECKING:  # it loads numpy, which `list` and bad input need not wait for
@@ -103,10 +103,8 @@ class Collection:
         is_folder = os.path.isdir(name)
         if os.path.exists(name) and not is_folder:
             path = Path(name)
-            try:
+            with told_as(f"{path} "):
                 content = read_regular(path, LARGEST_FILE)
-            except ValueError as error:
-                raise CaseError(f"{path} {error}") from None
             try:
                 text = content.decode("utf-8-sig")  # editors on Windows put a mark in front
             except UnicodeDecodeError as error:
@@ -157,8 +155,7 @@ class Collection:
 
     def hint(self, name: str) -> str:
         """The one that may have been meant, and all there are."""
-        near = did_you_mean(name, self.names)
-        return f"{'; ' + near if near else ''} (shipped: {', '.join(self.names)})"
+        return f"{did_you_mean(name, self.names)} (shipped: {', '.join(self.names)})"
 
 
 CASES = Collection("case", "case/shipped")

@@ -64,10 +64,8 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
             changed.setdefault(table, {})
             _table(changed, table)[key] = value
         else:
-            near, known = did_you_mean(table, TABLES), ", ".join(TABLES)
-            raise CaseError(
-                f"--set {dotted}: unknown table [{table}]{'; ' + near if near else ''} (known: {known})"
-            )
+            known = f"{did_you_mean(table, TABLES)} (known: {', '.join(TABLES)})"
+            raise CaseError(f"--set {dotted}: unknown table [{table}]{known}")
     _replace_alternatives(changed, overrides.keys())
     box, floor, support = (_table(changed, name) for name in ("container", "floor", "support"))
     if "floor.corner_patch_m" not in overrides and isinstance(patch := floor.get("corner_patch_m"), list):

@@ -8,7 +8,7 @@ import numpy as np
 from fem.case.case import Case
 from fem.case.plausible import USUAL_PEAKS, doubts
 from fem.case.tables.motion_tables import FloorMotionTable
-from fem.case.validation import CaseError
+from fem.case.validation import told_as
 from fem.records.files import read_record
 from fem.records.processing import Processing, motion_of, processed, stated_baseline, trimmed
 from fem.records.record import Component, Record, RecordError, cut_together
@@ -34,10 +34,8 @@ def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
 
     CaseError: its file is missing, is no motion, or does not fit its keys.
     """
-    try:
+    with told_as(f"[{table}] ", of=RecordError):
         return _recorded(case, table)
-    except RecordError as error:
-        raise CaseError(f"[{table}] {error}") from None
 
 
 def _keys(case: Case, table: MotionKey) -> tuple[FloorMotionTable, FloorMotionTable]:

@@ -14,7 +14,6 @@ def scaled_motion(case: Case, factor: float) -> dict[str, float]:
     for table, motion in (("motion", case.motion), ("vertical", case.vertical)):
         of_a_table = "scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2"
         kinds = {"none": (), "harmonic": strengths, "pulse": strengths, "table": (of_a_table,)}
-        assert motion.kind in kinds, motion.kind
         for key in kinds[motion.kind]:
             value = getattr(motion, key)
             if value is not None and not (table == "vertical" and follows and key == "scale"):

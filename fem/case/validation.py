@@ -6,8 +6,8 @@ keys that could be read. Each reason is one line: table, key, what is required, 
 
 import datetime
 import difflib
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -30,6 +30,15 @@ ModelT = TypeVar("ModelT", bound=BaseModel)
 
 class CaseError(ValueError):
     """A case that cannot be used; the message has one line for each reason."""
+
+
+@contextmanager
+def told_as(before: str, after: str = "", *, of: type[ValueError] = ValueError) -> Iterator[None]:
+    """Raise such an error of the block as a CaseError, each of its lines between these words."""
+    try:
+        yield
+    except of as error:
+        raise CaseError("\n".join(f"{before}{line}{after}" for line in str(error).splitlines())) from None
 
 
 def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:
@@ -72,13 +81,15 @@ def quantity_of(annotation: Any, metadata: Iterable[Any] = ()) -> Quantity | Non
     return None
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The nearest known name as a question, or an empty string."""
+def did_you_mean(name: object, known: Iterable[str]) -> str:
+    """The nearest known name as the end of a message; nothing where none is near."""
+    if not isinstance(name, str):
+        return ""
     names = list(known)
     lower = {candidate.lower(): candidate for candidate in names}
     near = difflib.get_close_matches(name.lower(), lower, n=1, cutoff=0.6)
     near = near or [candidate for candidate in lower if len(name) > 1 and candidate.startswith(name.lower())]
-    return f"did you mean {lower[near[0]]!r}?" if near else ""
+    return f"; did you mean {lower[near[0]]!r}?" if near else ""
 
 
 def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
@@ -103,8 +114,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
             problems.append(Problem(table=key, key="", reason=reason))
         elif isinstance(value, dict) and key not in (*TABLES, *ROWS, *TOP):
-            near = did_you_mean(key, TABLES)
-            unknown = f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"
+            unknown = f"unknown table{did_you_mean(key, TABLES)} (known: {', '.join(TABLES)})"
             problems.append(Problem(table=one_line(key), key="", reason=left_words(f"[{key}]") or unknown))
         elif key not in TABLES and key not in ROWS:
             heading[key] = value
@@ -165,12 +175,12 @@ def read_table(
             f"[{other}]" for other, table in TABLES.items() if other != name and key in known_keys(table)
         ]
         if elsewhere:
-            way_out = f"it belongs into {' or '.join(elsewhere)}"
+            way_out = f"; it belongs into {' or '.join(elsewhere)}"
         elif name and key in TOP:
-            way_out = "it belongs before the first table"
+            way_out = "; it belongs before the first table"
         else:
             way_out = did_you_mean(key, known)
-        unknown = f"unknown key {key[:80]!r}{'; ' + way_out if way_out else ''} (known: {', '.join(known)})"
+        unknown = f"unknown key {key[:80]!r}{way_out} (known: {', '.join(known)})"
         problems.append(Problem(table=name, key="", reason=unknown))
     given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
@@ -242,10 +252,9 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         return f'must be {kind} or "{choice}", got {_shown(faults["literal_error"]["input"])}'
     if "literal_error" in faults:
         choices = choices_of(field.annotation)
-        units = "m/s2" in choices  # the nearest spelling is another unit
-        near = did_you_mean(value, choices) if isinstance(value, str) and not units else ""
+        near = "" if "m/s2" in choices else did_you_mean(value, choices)  # of a unit it is another one
         listed = " or ".join(f'"{choice}"' for choice in choices)
-        return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
+        return f"must be {listed}, got {_shown(value)}{near}"
     hint = ""
     if isinstance(value, str) and quantity and faults.keys() & REQUIRED:
         try:

@@ -149,8 +149,7 @@ def study(
         only: Only this claim; may be repeated.
     """
     if name not in STUDIES:
-        near = did_you_mean(name, STUDIES)
-        raise CaseError(f"no study {name!r}{f'; {near}' if near else ''} (known: {', '.join(STUDIES)})")
+        raise CaseError(f"no study {name!r}{did_you_mean(name, STUDIES)} (known: {', '.join(STUDIES)})")
     folder = out if out is not None else OUTPUTS / f"study_{name}"
     document = from_clone("paper.run").check_paper(folder, only=only, jobs=jobs, force=force, quiet=quiet)
     if as_json:

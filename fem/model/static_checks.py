@@ -18,8 +18,10 @@ from dataclasses import dataclass, replace
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case, CaseError
 from fem.case.tables.run_tables import StaticTable
+from fem.case.validation import told_as
 from fem.model.floor import pivot_share
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
+from fem.runtime.units import finite
 from fem.seismic.body import LooseBody, utilisation
 from fem.seismic.wind import STABILISING, pressure_of, wind_rows
 from mesh.container import ContainerMesh
@@ -102,8 +104,8 @@ class ActionCheck:
         return ActionResult(
             base_shear_N=self.sliding.demand,
             tilting_moment_Nm=self.overturning.demand,
-            utilisation_sliding=_finite(self.sliding.utilisation),
-            utilisation_overturning=_finite(self.overturning.utilisation),
+            utilisation_sliding=finite(self.sliding.utilisation),
+            utilisation_overturning=finite(self.overturning.utilisation),
             least_weight_N=self.least_weight,
         )
 
@@ -384,11 +386,9 @@ def wind_check(case: Case, mesh: ContainerMesh, static: StaticChecks) -> ActionC
         mu_kinetic=case.contact.mu_kinetic,
         round=case.container.is_round,
     )
-    try:
+    with told_as("[wind] ", "; leave the table out"):
         pressure, _ = pressure_of(case.wind, mesh.height)
         tilts, slides = wind_rows(body, pressure, gamma_mu=case.wind.gamma_mu if case.wind else 1.0)
-    except ValueError as error:
-        raise CaseError(f"[wind] {error}; leave the table out") from None
     overturning, sliding = (
         CheckResult(
             demand=row.demand, capacity=row.capacity, unit=row.unit.replace(" ", ""), clause=row.source
@@ -402,7 +402,3 @@ def distance_beside(mesh: ContainerMesh) -> float:
     """Distance of the mass centre from the middle of the base [m]; 0 within rounding."""
     beside = abs(mesh.centroid[0])
     return beside if beside > ROUNDING * mesh.width else 0.0
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

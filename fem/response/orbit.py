@@ -121,7 +121,8 @@ def period_of(model: Model) -> float:
     return 2.0 * math.pi / model.case.motion.angular_frequency
 
 
-Progress = Callable[[float, float, int], None]  #: called with the time [s], the rotation [rad] and the mode
+#: called with the time [s], the rotation [rad] and the mode; None: nobody asks
+Progress = Callable[[float, float, int], None] | None
 
 AUDITED = 10  #: periods after which the energy balance is checked as that of a run
 STATUSES = {REACHED: "completed", OVERTURNED: "overturned", FAILED: "failed"}
@@ -150,12 +151,8 @@ class Orbit:
     reason: str | None = None  #: why it failed
 
 
-def no_progress(time: float, rotation: float, mode: int) -> None:
-    """A `Progress` that ignores it."""
-
-
 def follow_periods(
-    driven: Model, count: int, *, portrayed: int = 0, progress: Progress = no_progress
+    driven: Model, count: int, *, portrayed: int = 0, progress: Progress = None
 ) -> tuple[Model, Orbit]:
     """Step through `count` periods from a section.
 
@@ -198,7 +195,8 @@ def follow_periods(
         slipped = slip
         if k >= count - portrayed:
             portraits.append(samples[:, [ROW_ROTATION, ROW_ANGULAR_VELOCITY]])
-        progress(float(clock.time), float(pose[ROTATION]), int(track.mode))
+        if progress is not None:
+            progress(float(clock.time), float(pose[ROTATION]), int(track.mode))
         if k % AUDITED == AUDITED - 1:
             reason = audit(driven)
             if reason is not None:
@@ -229,12 +227,6 @@ def orbit_of(status: str, reason: str | None, *periods: list[Any]) -> Orbit:
     )
 
 
-def step_until(driven: Model, end: float) -> str:
-    """Step to an instant [s] that is a break of the run, or to the fall; returns the status."""
-    code, _ = step_to(driven, end)
-    return STATUSES[code]
-
-
 def _open_ledger(driven: Model) -> None:
     """Reset the energy balance."""
     driven.run.ledger[:] = 0.0
@@ -243,7 +235,7 @@ def _open_ledger(driven: Model) -> None:
 
 
 def step_to(driven: Model, end: float) -> tuple[int, FloatArray]:
-    """Step to an instant; returns the code of the stepping and the samples on the way."""
+    """Step to an instant [s] that is a break of the run, or to a fall; the code, and the samples on the way."""
     body, run, clock = driven.body, driven.run, driven.run.clock[0]
     if not isinstance(body, ModalBody):
         raise TypeError("a response curve is followed with the compiled models")  # the request excludes it

@@ -32,6 +32,7 @@ from fem.response.lasting import (
     unpacked,
 )
 from fem.response.orbit import (
+    STATUSES,
     Decay,
     Orbit,
     Progress,
@@ -40,10 +41,8 @@ from fem.response.orbit import (
     classify,
     driven_model,
     follow_periods,
-    no_progress,
     orbit_of,
     step_to,
-    step_until,
     stop_drive,
 )
 from fem.response.request import SAMPLES_PER_PERIOD, TURN, ResponseRequest
@@ -99,7 +98,7 @@ def computed(
     records: Sequence[PointRecord],
     before: Model | None,
     control: Control,
-    progress: Progress = no_progress,
+    progress: Progress = None,
 ) -> tuple[list[PointRecord], Model | None]:
     """The points of a task, and the motion to carry on; None where there is none.
 
@@ -149,13 +148,13 @@ def follow_point(
     container: Container,
     task: Task,
     before: Model | None = None,
-    progress: Progress = no_progress,
+    progress: Progress = None,
 ) -> tuple[PointRecord, Model | None]:
     """One frequency, from the motion before or as its case begins; returns the point and the motion to carry on."""
     at_section, status = before, "completed"
     if at_section is None:
         at_section, until = begin_drive(case, container)
-        status = step_until(at_section, until) if until > 0.0 else status
+        status = STATUSES[step_to(at_section, until)[0]] if until > 0.0 else status
     if status == "completed":
         on_floor = carry_drive(case, container, at_section)
         driven, orbit = follow_periods(on_floor, request.settle, progress=progress)

@@ -24,15 +24,10 @@ def of_a_second(case: Case) -> float:
     return factor * OF_A_SECOND[model]
 
 
-def expected_s(case: Case) -> float:
-    """Processor time of one run of a case, within a factor of three or so [s]."""
-    simulated = USUAL_RECORD_S if ends_at_rest(case) else longest_time(case)
+def expected_s(case: Case, *, record: bool = False) -> float:
+    """Processor time of one run of a case, or under a record of usual length, within a factor of three or so [s]."""
+    simulated = USUAL_RECORD_S if record or ends_at_rest(case) else longest_time(case)
     return OF_A_RUN[case.solver.model] + of_a_second(case) * simulated
-
-
-def of_a_record_s(case: Case) -> float:
-    """Processor time of one run of a case under a record of usual length [s]."""
-    return OF_A_RUN[case.solver.model] + of_a_second(case) * USUAL_RECORD_S
 
 
 def of_its_band_s(run_s: float) -> float:

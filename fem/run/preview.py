@@ -7,7 +7,7 @@ from typing import Any
 
 from contact.interface.penalty import contact_frequency
 from fem.case.case import Case
-from fem.case.columns import history_width
+from fem.case.columns import history_columns
 from fem.case.tables.duration import ends_at_rest
 from fem.model.floor_numbers import floor_result
 from fem.model.frames import frame_bytes, frame_interval
@@ -175,7 +175,7 @@ def frames_of(case: Case, nodes: int, duration: float) -> int:
 
 def required_disk(case: Case, nodes: int, duration: float) -> float:
     """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
-    history = table_bytes(samples_of(case, duration), history_width(case))
+    history = table_bytes(samples_of(case, duration), len(history_columns(case)))
     frames = frame_bytes(nodes) * frames_of(case, nodes, duration)
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
 

@@ -45,7 +45,7 @@ from fem.results.run_result import (
     Verdict,
     to_overturn,
 )
-from fem.runtime.units import SECONDS
+from fem.runtime.units import SECONDS, finite
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05  #: of a first impact, above which other energy entered
@@ -144,7 +144,7 @@ def verdict_from(
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
     lowest = float(run.old.boxes[0, ROTATION] if len(run.old.boxes) else run.old.pose[ROTATION])
     turned = run.old.boxes[:, ROTATION] if boxes else run.old.pose[ROTATION]
-    at_rest = _finite(float(run.clock[0].rest_since))
+    at_rest = finite(float(run.clock[0].rest_since))
     turns = track.left_open + track.right_open > 0 and at_rest is None  # about one side
     swing = float(np.abs(turned).max()) / angle if turns and not fell else 0.0
     neighbours = _neighbour_results(model)
@@ -204,7 +204,7 @@ def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
     """The figures that the stepper records, by key; of an event that has not happened, None."""
     sources = {key: figure.of.split(".") for key, figure in figures.items() if figure.of}
     values = {key: getattr(records[record], name) for key, (record, name) in sources.items()}
-    return {key: _finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
+    return {key: finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
 
 
 def _neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
@@ -221,7 +221,7 @@ def _neighbour_results(model: Model) -> tuple[NeighbourResult, ...]:
                 max_slip_m=joint.max_slip,
                 residual_slip_m=joint.slip,
                 max_uplift_m=joint.max_opening,
-                overturned_at_s=_finite(joint.fell_at),
+                overturned_at_s=finite(joint.fell_at),
                 hits=gap.hits,
                 max_force_N=gap.max_force,
                 largest_closing_velocity_m_s=gap.largest_closing_velocity,
@@ -267,7 +267,7 @@ def _of_links(model: Model, neighbours: Sequence[NeighbourResult]) -> dict[str, 
         },
         "link_hits": int(links["hits"].sum()),
         "link_velocity_m_s": float(links["largest_closing_velocity"].max()),
-        "link_broken_at_s": _finite(float(links["broken_at"].min())),
+        "link_broken_at_s": finite(float(links["broken_at"].min())),
         "link_slack_m": float(whole["least_gap"].min()) if whole.size else None,
         "neighbour_rotation_ratio": max((neighbour.rotation_ratio for neighbour in neighbours), default=None),
     }
@@ -288,8 +288,8 @@ def held_by(model: Model) -> tuple[HeldResult, ...] | None:
                 max_force_N=float(record["max_force"]),
                 hits=int(record["hits"]),
                 largest_closing_velocity_m_s=float(record["largest_closing_velocity"]),
-                gap_left_m=_finite(float(record["least_gap"])) if whole else None,
-                broken_at_s=_finite(float(record["broken_at"])),
+                gap_left_m=finite(float(record["least_gap"])) if whole else None,
+                broken_at_s=finite(float(record["broken_at"])),
                 **(beside[number] if number < len(beside) else {}),
             )
         )
@@ -388,10 +388,6 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,
     )
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def end_of_drive(model: Model) -> float:

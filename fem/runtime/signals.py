@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -92,18 +92,14 @@ def stop_requested() -> bool:
     return any(_requests)
 
 
-@contextmanager
-def ending_at_once() -> Iterator[None]:
+def ending_at_once() -> AbstractContextManager[None]:
     """Let both signals raise KeyboardInterrupt: for work that has nothing to save."""
-    with _handled_by(_raise):
-        yield
+    return _handled_by(_raise)
 
 
-@contextmanager
-def unheard() -> Iterator[None]:
+def unheard() -> AbstractContextManager[None]:
     """Let neither signal cut off what is printed of finished work."""
-    with _handled_by(lambda number, frame: _heard.append(time.monotonic())):
-        yield
+    return _handled_by(lambda number, frame: _heard.append(time.monotonic()))
 
 
 @contextmanager

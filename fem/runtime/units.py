@@ -83,6 +83,11 @@ def in_unit(value: float, factor: float) -> float:
     return float(f"{factor * value:.12g}")
 
 
+def finite(value: float) -> float | None:
+    """A number, as JSON has it; None for an infinite one and none."""
+    return value if math.isfinite(value) else None
+
+
 def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0) -> str:
     """A number with so many significant figures, without an exponent where it has at most six digits."""
     number = in_unit(value, factor)

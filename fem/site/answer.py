@@ -16,6 +16,7 @@ from fem.site.result import (
     FIGURE_OF,
     FOUND_FROM,
     REFINED,
+    SCAN,
     SET,
     ActionAnswer,
     ByRule,
@@ -35,14 +36,13 @@ from fem.site.rule import (
     MEAN_FROM,
     MotionSlips,
     RunGroup,
-    first_overturning,
     further_motions,
     governing_run,
     groups_of,
     margin_factor,
     rule_of,
     rule_range,
-    scan_of,
+    runs_by_factor,
 )
 from fem.site.tables import LimitsTable
 
@@ -117,6 +117,11 @@ def answer_of(
     against.sort(key=lambda reason: reason[0] != NOT_FULFILLED)
     slid_too_far = slip is not None and slip.slip_largest_m > limits.slip_m
     fails = [margin_factor(limits, runs), slip.margin_factor if slip else None]
+    by_factor = runs_by_factor(runs, SET, SCAN, REFINED)
+    fell = (
+        factor for factor, some in by_factor.items() if any(run.outcome == Outcome.OVERTURNED for run in some)
+    )
+    scan = [rule_of(groups_of(some), factor) for factor, some in runs_by_factor(runs, SET, SCAN).items()]
     return SiteAnswer(
         answer=answer,
         fulfilled={FULFILLED: True, NOT_FULFILLED: False}.get(answer or ""),
@@ -131,11 +136,11 @@ def answer_of(
         governing=governing_run(limits, own),
         actions=tuple(actions),
         margin_factor=min((factor for factor in fails if factor is not None), default=None),
-        factor_at_first_overturning=first_overturning(runs),
+        factor_at_first_overturning=min(fell, default=None),
         factor_at_first_movement=moves_at,
         two_directions=slip,
         rule_range=ranged,
-        scan=scan_of(runs),
+        scan=tuple(scan) if len(scan) > 1 else (),
         failed_between=sum(key.stage == REFINED and run.outcome is None for key, run in runs.items()),
         further=further,
         confirmed=tuple(confirmed),

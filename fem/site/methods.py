@@ -1,14 +1,14 @@
 """The simplified methods for the container of a site, beside the results of the runs for the same action."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.modes import ROCKING
-from fem.case.validation import CaseError
+from fem.case.validation import told_as
 from fem.results.outcome import least_slide
+from fem.runtime.units import finite
 from fem.seismic.action import SiteAction
 from fem.seismic.body import FloorAction, LooseBody, MethodQuantity, MethodRow, length_in_words
 from fem.seismic.methods import methods_of, rows_with_factors
@@ -23,6 +23,7 @@ def site_methods(
     *,
     bodies: Sequence[SiteBody],
     inputs: SiteInputs,
+    limits: LimitsTable,
     site: SiteAction,
     motions: Sequence[SiteMotion],
     periods_s: Sequence[float],
@@ -39,11 +40,6 @@ def site_methods(
         floor: of the building; None: on the ground.
         runs: those of the set count, with both signs.
     """
-    limits = LimitsTable(
-        rotation_ratio=inputs.rotation_ratio_limit,
-        single_rotation_ratio=inputs.single_rotation_ratio_limit,
-        slip_m=inputs.slip_limit_m,
-    )
     action = floor_action(site, motions, periods_s, floor)
     rows = []
     for body in bodies:
@@ -82,10 +78,8 @@ def wind_utilisation(bodies: Sequence[SiteBody], inputs: SiteInputs) -> float | 
     Raises:
         CaseError: the container is higher than the rule for the wind holds.
     """
-    try:
+    with told_as("[wind] ", "; leave the table out"):
         _, rows = _under_wind(bodies, inputs)
-    except ValueError as error:
-        raise CaseError(f"[wind] {error}; leave the table out") from None
     return max((row.utilisation for row in rows), default=None)
 
 
@@ -184,15 +178,11 @@ def _compared(*, refused: bool, failed: bool) -> str:
 
 def _result(row: MethodRow, body: SiteBody, found: tuple[str, str], factor: float | None) -> SiteMethod:
     return SiteMethod(
-        **vars(row) | {"quantity": row.quantity.value, "demand": _finite(row.demand)},
+        **vars(row) | {"quantity": row.quantity.value, "demand": finite(row.demand)},
         mass=body.mass,
         elevation=body.elevation,
-        utilisation=_finite(row.utilisation),
+        utilisation=finite(row.utilisation),
         found=found[0],
         compared=found[1],
         factor=factor,
     )
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

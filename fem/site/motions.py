@@ -13,7 +13,7 @@ import numpy as np
 from fem.case.data_files import split_channel
 from fem.case.plausible import doubts
 from fem.case.tables.problem import outside_the_folder, stays_in_the_folder
-from fem.case.validation import CaseError
+from fem.case.validation import CaseError, told_as
 from fem.records.files import read_record
 from fem.records.processing import Processing, stated_baseline
 from fem.records.record import Component, Direction, Record, RecordError, cut_together
@@ -66,7 +66,7 @@ def ground_motions(
     """
     table, target = request.motions, request.floor_target or request.action
     if table.source == "artificial":
-        try:
+        with told_as("[motions] "):
             return artificial_set(
                 target,
                 count=table.count,
@@ -76,8 +76,6 @@ def ground_motions(
                 vertical=table.vertical,
                 second=table.second_component,
             )
-        except ValueError as error:
-            raise CaseError(f"[motions] {error}") from None
     records = [
         _record(request, number, names, allow_outside)
         for number, names in enumerate(table.files or [], start=1)
@@ -161,7 +159,7 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
     given = dict(zip("hvt", names, strict=False))
     if not request.motions.vertical:
         given.pop("v", None)
-    try:
+    with told_as("[motions] files: ", of=RecordError):
         for letter, name in given.items():
             record, channel = _read(request, name, allow_outside)
             records.append(record)
@@ -175,8 +173,6 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
             scaled = request.motions.source != "floor"
             said = doubts(record.name, component, component, scale=1.0, confirmed=scaled)
             noted += [f"{record.name}: {note}" for note in (*component.notes, *said)]
-    except RecordError as error:
-        raise CaseError(f"[motions] files: {error}") from None
     notes = (*noted, *_baselines_in_words(request, given, records, components))
     if len(set(map(id, components))) < len(components):
         raise CaseError(f"[motions] files: a component of {records[0].name} is named for two directions")
@@ -208,12 +204,10 @@ def _baselines_in_words(
     for letter, record, component in zip(letters, records, components, strict=True):
         if letter == "t" and table.second_component == 0.0:
             continue
-        try:
+        with told_as("[motions] files: ", of=RecordError):
             change = stated_baseline(
                 record.name, component, MATCHED, allowed=bool(table.allow_baseline), way_out=BASELINE
             )
-        except RecordError as error:
-            raise CaseError(f"[motions] files: {error}") from None
         if change:
             notes[f"{record.name}: matching removes a baseline; {change}"] = None
     return tuple(notes)

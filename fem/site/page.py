@@ -144,16 +144,6 @@ def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
     return rows
 
 
-def motion_figure(folder: Path, result: SiteResult, motion: SiteMotion) -> str:
-    """The figure of a motion, from its files."""
-    curves = {name[-5:]: _curve(folder / name) for name in motion.files if name.endswith(".csv")}
-    if "h.csv" not in curves:
-        raise FolderError(f"{folder / RESULT_FILE}: motion {motion.number} has no curve; compute it again")
-    times, horizontal = curves["h.csv"]
-    vertical = curves["v.csv"][1] if "v.csv" in curves else None
-    return draw_motion(motion, result.action, times, horizontal, vertical)
-
-
 def _curve(path: Path) -> tuple[FloatArray, FloatArray]:
     try:
         values = np.array(list(csv.reader(read_text(path).splitlines()))[1:], dtype=np.float64)
@@ -239,14 +229,14 @@ def draw_floor(action: SiteActionResult, floor: FloorResult) -> str:
         return style.svg_of(figure)
 
 
-def draw_motion(
-    motion: SiteMotion,
-    action: SiteActionResult,
-    times: FloatArray,
-    horizontal: FloatArray,
-    vertical: FloatArray | None,
-) -> str:
-    """The curves of a motion over time, and its spectra beside the targets."""
+def motion_figure(folder: Path, result: SiteResult, motion: SiteMotion) -> str:
+    """The curves of a motion over time, from its files, and its spectra beside the targets."""
+    action = result.action
+    files = {name[-5:]: folder / name for name in motion.files if name.endswith(".csv")}
+    if "h.csv" not in files:
+        raise FolderError(f"{folder / RESULT_FILE}: motion {motion.number} has no curve; compute it again")
+    times, horizontal = _curve(files["h.csv"])
+    vertical = _curve(files["v.csv"])[1] if "v.csv" in files else None
     with style.house_style():
         tall, share = 2.5, 0.6
         figure = Figure(figsize=(style.WIDTH, tall))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fem.html.page import text_of
 from fem.results.json_block import JsonBlock
-from fem.run.expected import of_a_record_s, of_its_band_s
+from fem.run.expected import expected_s, of_its_band_s
 from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.site.motions import GIVEN_FLOORS
@@ -46,6 +46,7 @@ def forecast(stages: Stages, jobs: int, *, scan: bool = True) -> Forecast:
     own, most = stages.most_runs(scan=scan)
     request = stages.request
     case = still(next(iter(request.variants.values())), request.heading.model)
+    deciding = expected_s(still(case, CONFIRMING), record=True)
     total = len(stages.of_set())
     moves = own > 0 and not stages.quick
     made = request.motions.further if moves or not own else 0
@@ -53,10 +54,8 @@ def forecast(stages: Stages, jobs: int, *, scan: bool = True) -> Forecast:
         of_set=total,
         of_set_still=total - own,
         most=most,
-        seconds=(most * of_a_record_s(case) + made * OF_A_MOTION_S) / jobs,
-        deciding_seconds=MOST_DECIDING * of_its_band_s(of_a_record_s(still(case, CONFIRMING))) / jobs
-        if moves
-        else 0.0,
+        seconds=(most * expected_s(case, record=True) + made * OF_A_MOTION_S) / jobs,
+        deciding_seconds=MOST_DECIDING * of_its_band_s(deciding) / jobs if moves else 0.0,
         cores=jobs,
         quick=stages.quick,
     )

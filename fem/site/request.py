@@ -16,7 +16,7 @@ from fem.case.tables import quantities as q
 from fem.case.tables.run_tables import DocumentTable, WindTable
 from fem.case.tables.table import CaseTable, OneLine, case_key, optional_key
 from fem.case.toml import toml_document
-from fem.case.validation import CaseError
+from fem.case.validation import CaseError, told_as
 from fem.runtime.user_files import leads_out, real_path
 from fem.seismic.action import (
     GERMAN_ZONES,
@@ -117,12 +117,6 @@ class SiteRequest:
         """File stem, or the name of the shipped file."""
         return self.origin.name
 
-    @property
-    def portable(self) -> dict[str, Any]:
-        """The tables, with records by their names alone: the same wherever these lie."""
-        files = [[Path(name).name for name in pair] for pair in self.motions.files or ()]
-        return {**self.data, **({"motions": {**self.data["motions"], "files": files}} if files else {})}
-
     @cached_property
     def action(self) -> SiteAction:
         """The action of the site.
@@ -130,10 +124,37 @@ class SiteRequest:
         Raises:
             CaseError: a ground that the spectrum does not have.
         """
-        try:
-            return _action_of(self.site, self.element_factor)
-        except ValueError as error:
-            raise CaseError(f"[site] {error}") from None
+        site, reference = self.site, self.site.reference_acceleration_m_s2
+        with told_as("[site] "):
+            if site.spectrum == "EN1998-1":
+                shape = eurocode_shape(site.type or 1, site.ground or "")
+            elif site.spectrum == "DIN-NA-2011":
+                shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
+                reference = GERMAN_ZONES[site.zone or 0]
+            elif site.spectrum == "second-generation":
+                plateau = site.plateau_m_s2 or 0.0
+                reference = plateau / site.plateau_over_peak
+                shape = second_generation_shape(
+                    plateau=plateau,
+                    one_second=site.one_second_m_s2 or 0.0,
+                    periods=_three(site.end_periods_s),
+                    vertical_ratio=site.vertical_ratio or 0.0,
+                    ratio=site.plateau_over_peak,
+                )
+            else:
+                shape = SpectrumShape(
+                    soil_factor=site.soil_factor or 0.0,
+                    corner_periods=_three(site.corner_periods_s),
+                    vertical_ratio=site.vertical_ratio or 0.0,
+                    vertical_corner_periods=_three(site.vertical_corner_periods_s),
+                )
+            return SiteAction(
+                shape=shape,
+                reference_acceleration=reference or 0.0,
+                importance_factor=site.importance_factor,
+                element_importance_factor=self.element_factor,
+                topographic_factor=site.topographic_factor,
+            )
 
     @property
     def element_factor(self) -> float:
@@ -174,7 +195,7 @@ class SiteRequest:
         """
         if (floor := self.floor_spectrum) is None:
             return None
-        try:
+        with told_as("[floor_spectrum] "):
             points = floor.model_dump() if floor.file is None else read_spectrum(self._beside(floor.file))
             return FloorSpectrum(
                 periods=tuple(points[PERIOD]),
@@ -182,14 +203,6 @@ class SiteRequest:
                 vertical_accelerations=tuple(points.get(VERTICAL) or ()),
                 ground=self.action,
             )
-        except ValueError as error:
-            raise CaseError(f"[floor_spectrum] {error}") from None
-
-    @property
-    def point_files(self) -> dict[str, str]:
-        """Names of the files of points beside the site file, by the tables that name them."""
-        floor = self.floor_spectrum
-        return {"floor_spectrum": floor.file} if floor is not None and floor.file is not None else {}
 
     @property
     def frictions(self) -> list[tuple[float, float]]:
@@ -228,10 +241,8 @@ class SiteRequest:
         """
         if (wind := self.wind) is None:
             return None
-        try:
+        with told_as("[wind] "):
             return pressure_of(wind, self.container.container.total_height)
-        except ValueError as error:
-            raise CaseError(f"[wind] {error}") from None
 
     @cached_property
     def inputs(self) -> SiteInputs:
@@ -390,40 +401,6 @@ def _check(request: SiteRequest) -> None:
         )
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
-
-
-def _action_of(site: SiteTable, element_factor: float) -> SiteAction:
-    """The action of a site; ValueError for a ground that the spectrum does not have."""
-    reference = site.reference_acceleration_m_s2
-    if site.spectrum == "EN1998-1":
-        shape = eurocode_shape(site.type or 1, site.ground or "")
-    elif site.spectrum == "DIN-NA-2011":
-        shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
-        reference = GERMAN_ZONES[site.zone or 0]
-    elif site.spectrum == "second-generation":
-        plateau = site.plateau_m_s2 or 0.0
-        reference = plateau / site.plateau_over_peak
-        shape = second_generation_shape(
-            plateau=plateau,
-            one_second=site.one_second_m_s2 or 0.0,
-            periods=_three(site.end_periods_s),
-            vertical_ratio=site.vertical_ratio or 0.0,
-            ratio=site.plateau_over_peak,
-        )
-    else:
-        shape = SpectrumShape(
-            soil_factor=site.soil_factor or 0.0,
-            corner_periods=_three(site.corner_periods_s),
-            vertical_ratio=site.vertical_ratio or 0.0,
-            vertical_corner_periods=_three(site.vertical_corner_periods_s),
-        )
-    return SiteAction(
-        shape=shape,
-        reference_acceleration=reference or 0.0,
-        importance_factor=site.importance_factor,
-        element_importance_factor=element_factor,
-        topographic_factor=site.topographic_factor,
-    )
 
 
 def _three(values: list[float] | None) -> tuple[float, float, float]:

@@ -232,20 +232,3 @@ def margin_factor(limits: LimitsTable, runs: Mapping[RunKey, SiteRun]) -> float 
         )
 
     return min((factor for factor in by_factor if fails(factor)), default=None)
-
-
-def first_overturning(runs: Mapping[RunKey, SiteRun]) -> float | None:
-    """The least factor on the motions at which a run overturned, of those tried; None: none did."""
-    factors = [
-        key.factor
-        for key, run in runs.items()
-        if key.stage in (SET, SCAN, REFINED) and run.outcome == Outcome.OVERTURNED
-    ]
-    return min(factors, default=None)
-
-
-def scan_of(runs: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
-    """The set at every factor tried; empty where that is one."""
-    by_factor = runs_by_factor(runs, SET, SCAN)
-    points = [rule_of(groups_of(own), factor) for factor, own in by_factor.items()]
-    return tuple(points) if len(points) > 1 else ()

@@ -108,7 +108,9 @@ def run_site(
 def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     """Equal for requests that give the same result."""
     for_people = ("title", "document", "sources", "container")
-    data = {key: value for key, value in request.portable.items() if key not in for_people}
+    data = {key: value for key, value in request.data.items() if key not in for_people}
+    if files := [[Path(name).name for name in pair] for pair in request.motions.files or ()]:
+        data["motions"] = {**data["motions"], "files": files}  # by their names alone, wherever these lie
     digest = hashlib.sha256()
     for motion in ground:
         for component in motion.components:
@@ -179,26 +181,25 @@ def answered(
     names = ["the set", "its repetitions", *[FURTHER_ONES] * stages.has_further]
     names += [OTHER_FACTORS] * scans + [DECIDING] * (not left_out)
     told = NamedStages(names, runner.reporter)
-    begun: list[str] = []  #: the stage whose runs follow
+    stage = ""  #: whose runs follow
     left = 0  #: runs of the set at other factors that may still be asked for
 
     def batches() -> Iterator[Sequence[RunKey]]:
-        nonlocal left
+        nonlocal stage, left
         for name, keys in zip(names, stages.of_the_answer(runner), strict=False):
-            begun[:] = [name]
+            stage = name
             yield keys
             if varied and now().answer == NOT_FULFILLED:
                 return
         if scans:
-            begun.clear()
-            left = stages.most_scanned
+            stage, left = "", stages.most_scanned
             told.begin(OTHER_FACTORS, left, up_to=True)
             yield from stages.of_the_margin()
 
-    def begin(count: int) -> None:
+    def begin(what: str, count: int) -> None:
         nonlocal left
-        if begun:
-            told.begin(begun.pop(), count)
+        if stage:
+            told.begin(stage, count)
         left = max(left - count, 0)
 
     def note(line: str) -> None:
@@ -261,6 +262,7 @@ def _result(stages: Stages, motions: MotionSet, answer: SiteAnswer | None) -> Si
         methods=site_methods(
             bodies=stages.bodies,
             inputs=request.inputs,
+            limits=request.limits,
             site=request.action,
             motions=motions.motions,
             periods_s=action.periods_s,
@@ -331,18 +333,19 @@ def confirmed(
 
 
 def texts_of(request: SiteRequest, kind: ResultKind) -> dict[str, str]:
-    """The site file, its container, and the files of points that it names, by their names in a folder of results.
+    """The site file, its container, and the file of points that it names, by their names in a folder of results.
 
     The site file names what lies beside it there, so that it can be repeated from there alone.
 
     Raises:
-        CaseError: a file of points is named like a result, which would replace it.
+        CaseError: the file of points is named like a result, which would replace it.
         ValueError: it cannot be read.
     """
     own = {"site.toml": _beside_its_files(request), CONTAINER: request.container.text}
-    for table, name in request.point_files.items():
-        require_free_name(place_of(f"{table}.file"), PurePath(name), kind, own)
-    return own | {name: spectrum_text(request.origin.folder / name) for name in request.point_files.values()}
+    if (floor := request.floor_spectrum) is None or floor.file is None:
+        return own
+    require_free_name(place_of("floor_spectrum.file"), PurePath(floor.file), kind, own)
+    return own | {floor.file: spectrum_text(request.origin.folder / floor.file)}
 
 
 def copy_files(request: SiteRequest, folder: Path) -> None:

@@ -17,7 +17,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 
 from fem.case.tables.quantities import Quantity
-from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
+from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of, told_as
 from fem.html.page import text_of
 from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
@@ -34,9 +34,9 @@ from fem.site.result import OF_ANSWER, SiteAnswer, SizeResult
 from fem.site.run import RUNS, answered, copy_files, set_of, site_hash, texts_of, write_floors
 from fem.site.runs import COLUMNS, bodies_of
 from fem.site.stages import Stages
-from fem.study.axes import AxisError, field_of
+from fem.study.axes import field_of
 from fem.study.derived import value_in
-from fem.study.driver import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.study.driver import COMPLETED, Study, StudyOptions, hash_of, run_study
 from fem.study.runner import Runner
 from fem.study.table import table_text
 from mesh.errors import MeshError
@@ -133,10 +133,8 @@ def size_axis(
             f"--over {key}: the horizontal motion of the floor is given, which [site] does not change"
         )
     for name, bound in (("--from", low), ("--to", high)):
-        try:
+        with told_as(f"{name}: {key} "):
             quantity.check(bound)
-        except ValueError as error:
-            raise CaseError(f"{name}: {key} {error}") from None
     if count is not None and not 2 <= count <= MOST_COUNT:
         raise CaseError(f"--count must be 2 to {MOST_COUNT}, got {count}")
     values = spaced(low, high, count or COUNT)
@@ -189,14 +187,11 @@ def _quantity(key: str) -> Quantity:
     if table in TABLES:
         fields = known_keys(TABLES[table])
         if name not in fields:
-            near = did_you_mean(name, fields)
-            raise CaseError(f"--over {key}: no such key of a site file{'; ' + near if near else ''}")
+            raise CaseError(f"--over {key}: no such key of a site file{did_you_mean(name, fields)}")
         field = fields[name]
     else:
-        try:
+        with told_as(f"--over {key}: "):
             field = field_of(key)
-        except AxisError as error:
-            raise CaseError(f"--over {key}: {error}") from None
     quantity = quantity_of(field.annotation, field.metadata)
     if quantity is None or "list" in str(field.annotation):
         raise CaseError(f"--over {key}: it holds no single number; try one of {', '.join(KNOWN)}")
@@ -249,22 +244,8 @@ def so_far(axis: SizeAxis, answers: Mapping[float, SiteAnswer], value: float) ->
     return f"{axis.words}{unit}: {', '.join([*decided, f'{value:.4g} being tried'])}"
 
 
-def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "") -> SizeResult:
-    """What is known before any value is tried."""
-    return SizeResult(
-        command=command,
-        key=axis.key,
-        followers=followers,
-        unit=axis.unit,
-        low=axis.values[0],
-        high=axis.values[-1],
-    )
-
-
-def size_result(
-    axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult | None = None
-) -> SizeResult:
-    """Which values fulfil the rule, from the answers by value.
+def size_result(axis: SizeAxis, answers: Mapping[float, SiteAnswer], begun: SizeResult) -> SizeResult:
+    """Which values fulfil the rule, from the answers by value; `begun`: what was known before any was tried.
 
     A sentence says what fails next to the value wanted, and which stretches elsewhere fulfil the rule.
     """
@@ -289,7 +270,7 @@ def size_result(
         stretches=partial(_stretches, axis=axis),
     )
     return replace(
-        begun or size_asked(axis),
+        begun,
         status=COMPLETED,
         answer=words,
         value=wanted,
@@ -365,8 +346,15 @@ def run_size(
     ground = Stages.of(request, folder, allow_outside=allow_outside).ground
     ends = ("--from", f"{axis.values[0]:g}", "--to", f"{axis.values[-1]:g}", "--count", str(len(axis.values)))
     command = command_line("size", request.origin.place, "--over", axis.key, *ends)
-    begun = size_asked(axis, followers(request, axis.key), command)
-    begun = replace(begun, warnings=doubts(MotionResult(), at(request, axis, axis.values[-1]).container))
+    begun = SizeResult(
+        command=command,
+        key=axis.key,
+        followers=followers(request, axis.key),
+        unit=axis.unit,
+        low=axis.values[0],
+        high=axis.values[-1],
+        warnings=doubts(MotionResult(), at(request, axis, axis.values[-1]).container),
+    )
     study = Study(
         kind=SIZE,
         request=hash_of([site_hash(request, ground), repr(axis)]),
@@ -400,18 +388,16 @@ def _compute(
                 value: stages_at(request, axis, value, working, made, allow_outside=allow_outside)
                 for value in values
             }
-            each = [forecast(tried[value], runner.jobs, scan=False) for value in values]
-            what = f"{len(values)} value{'s' * (len(values) > 1)}, up to {sum(one.most for one in each)} runs"
+            each = [(tried[value].load, forecast(tried[value], runner.jobs, scan=False)) for value in values]
+            most = sum(one.most for _, one in each)
+            what = f"{len(values)} value{'s' * (len(values) > 1)}, up to {most} runs"
             # they change between any two of the scan, as far as is known
             known = _fulfilled(answers) or {value: str(k % 2) for k, value in enumerate(axis.values)}
             rounds = 0.0 if axis.whole else rounds_left(known, resolution=RESOLUTION, inner=INNER)
             count = len(values) * max(rounds, 1.0) if took else len(values) + INNER * rounds
-            loads = (tried[value].load for value in values)
-            forecasts = [
-                load * (one.seconds + one.deciding_seconds) for load, one in zip(loads, each, strict=True)
-            ]
             # as long as those that took longest: the next ones are near the boundary
-            seconds = count * float(np.mean(sorted(took)[-2:] or forecasts))
+            long = sorted(took)[-2:] or [load * (one.seconds + one.deciding_seconds) for load, one in each]
+            seconds = count * float(np.mean(long))
             what += ", then values between them" * (count > len(values))
             runner.reporter.message(f"{what}: {expected_words(seconds, runner.jobs)}")
             for value in values:
@@ -421,7 +407,7 @@ def _compute(
                 answer = answered(stages, set_of(stages), runner, place.path / RUNS, value)
                 if answer is None:
                     left = f"{len(answers)} values are decided, {len(tried) - len(answers)} are not"
-                    return replace(begun, status=INTERRUPTED, missing=left)
+                    return begun.interrupted(left)
                 answers[value] = answer
                 took.append(time.perf_counter() - since)
     finally:

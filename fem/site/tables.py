@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
-from fem.case.tables.problem import Rule, file_beside, one_of
+from fem.case.tables.problem import Rule, file_beside, one_of, refused
 from fem.case.tables.quantities import Quantity
 from fem.case.tables.table import CaseTable, case_key, optional_key
 from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
@@ -81,13 +81,17 @@ WHY = {
 }
 
 
-def _missing(site: Any) -> list[str]:
-    return [key for key in NEEDED[site.spectrum] if getattr(site, key) is None]
+def _missing(site: Any) -> str:
+    missing = [key for key in NEEDED[site.spectrum] if getattr(site, key) is None]
+    keys = ", ".join(f"{key} ({WHY[key]})" if key in WHY else key for key in missing)
+    return f'= "{site.spectrum}" needs {keys}' if missing else ""
 
 
-def _foreign(site: Any) -> list[str]:
+def _foreign(site: Any) -> str:
     own = {*NEEDED[site.spectrum], *(("type",) if site.spectrum == "EN1998-1" else ())}
-    return [key for key in OF_SPECTRA if key not in own and getattr(site, key) is not None]
+    foreign = [key for key in OF_SPECTRA if key not in own and getattr(site, key) is not None]
+    way_out = f'{", ".join(foreign)}; take the key out, or choose spectrum = "custom"'
+    return f'= "{site.spectrum}" has its own {way_out}' if foreign else ""
 
 
 def _rising_periods(key: str) -> Rule:
@@ -149,22 +153,8 @@ class SiteTable(CaseTable):
     )
 
     rules = (
-        Rule(
-            "site.spectrum",
-            lambda site: not _missing(site),
-            lambda site: (
-                f'= "{site.spectrum}" needs '
-                + ", ".join(f"{key} ({WHY[key]})" if key in WHY else key for key in _missing(site))
-            ),
-        ),
-        Rule(
-            "site.spectrum",
-            lambda site: not _foreign(site),
-            lambda site: (
-                f'= "{site.spectrum}" has its own {", ".join(_foreign(site))}; take the key out, or choose '
-                'spectrum = "custom"'
-            ),
-        ),
+        refused("site.spectrum", _missing),
+        refused("site.spectrum", _foreign),
         _rising_periods("corner_periods_s"),
         _rising_periods("vertical_corner_periods_s"),
     )

@@ -306,14 +306,13 @@ def fallen_cells_in_words(table: SweepTable) -> str | None:
 
     Of each axis the values at which any cell falls, unless they are all, and the other values of those at its end.
     """
-    limit, kinds = table.info.limit_slip_m, [*map(ending_of, table["status"], table["outcome"])]
-    slips = table.columns.get(SLIPPED, np.full(len(kinds), np.nan))
-    slid = slips > (math.inf if limit is None else limit)
-    points = [
-        point_of(table.axes, cell) for cell, kind in enumerate(kinds) if kind in NOT_STANDING or slid[cell]
-    ]
-    if len(points) in (0, len(kinds)) or not np.all(table["status"] != ""):
+    limit = table.info.limit_slip_m
+    kinds = np.array([*map(ending_of, table["status"], table["outcome"])])
+    slid = table.columns.get(SLIPPED, np.nan) > (math.inf if limit is None else limit)
+    cells = np.flatnonzero(np.isin(kinds, NOT_STANDING) | slid)
+    if cells.size in (0, kinds.size) or not np.all(table["status"] != ""):
         return None
+    points = [point_of(table.axes, cell) for cell in cells.tolist()]
 
     def listed(axis: Axis, some: Sequence[Mapping[str, Any]]) -> str:
         """The values of an axis at some points; empty for all of them."""
@@ -325,8 +324,10 @@ def fallen_cells_in_words(table: SweepTable) -> str | None:
         return in_words(axis, [value for value in axis.values if value in known])
 
     parts = []
-    for axis in (axis for axis in table.axes if listed(axis, points)):
-        words, known = f"some at {listed(axis, points)} alone", {point[axis.key] for point in points}
+    for axis in table.axes:
+        if not (values := listed(axis, points)):
+            continue
+        words, known = f"some at {values} alone", {point[axis.key] for point in points}
         changes = [pair for pair in pairwise(axis.values) if (pair[0] in known) != (pair[1] in known)]
         if axis.is_numeric and len(changes) == 1:
             end = [point for point in points if point[axis.key] in changes[0]]
@@ -334,14 +335,12 @@ def fallen_cells_in_words(table: SweepTable) -> str | None:
             there = ", ".join(f"{name} {values}" for name, values in others if values)
             before, behind = ("some", "none") if changes[0][0] in known else ("none", "some")
             low, high = (in_words(axis, [value], 4) for value in changes[0])
-            words = (
-                f"{before} up to {low}, {behind} from {high} on{f' (there with {there})' if there else ''}"
-            )
+            words = f"{before} up to {low}, {behind} from {high} on" + f" (there with {there})" * bool(there)
         parts.append(f"{axis_name(axis)}: {words}")
-    fell = falling_in_words(limit, past=True)
-    if any(kind == Ending.INVALID for kind in kinds):
-        fell += " or destroyed a corner"
-    return f"{len(points)} of {len(kinds)} cells {fell}: {'; '.join(parts) or 'some at every value of each axis'}"
+    fell = falling_in_words(limit, past=True) + " or destroyed a corner" * (Ending.INVALID in kinds)
+    return (
+        f"{cells.size} of {kinds.size} cells {fell}: {'; '.join(parts) or 'some at every value of each axis'}"
+    )
 
 
 HALF = 0.5

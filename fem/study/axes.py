@@ -146,12 +146,14 @@ def field_of(key: str) -> FieldInfo:
             wanted = " or ".join(f"{owner}.{name}" for owner in owners)
             raise AxisError(f"is no key before the first table; write {wanted!r}")
         keys = [f"{known}.{field}" for known, model in NAMED.items() for field in known_keys(model)]
-        raise AxisError(f"is no key of a case file{hint(name, [*TOP, *keys])}")
+        raise AxisError(f"is no key of a case file{did_you_mean(name, [*TOP, *keys])}")
     if table not in NAMED:
-        raise AxisError(f"names no table of a case file{hint(table, NAMED)} (known: {', '.join(NAMED)})")
+        raise AxisError(
+            f"names no table of a case file{did_you_mean(table, NAMED)} (known: {', '.join(NAMED)})"
+        )
     fields = known_keys(NAMED[table])
     if name not in fields:
-        raise AxisError(f"is no key of a case file{hint(name, fields)} (known: {', '.join(fields)})")
+        raise AxisError(f"is no key of a case file{did_you_mean(name, fields)} (known: {', '.join(fields)})")
     return fields[name]
 
 
@@ -191,7 +193,7 @@ def read_axis(key: str, given: Any) -> Axis:
     for value in values:  # that the key can never have; rules between keys are checked with the case
         if choices and value not in choices:
             listed = " or ".join(f'"{choice}"' for choice in choices)
-            raise AxisError(f"must be {listed}, got {value!r}{hint(value, choices)}")
+            raise AxisError(f"must be {listed}, got {value!r}{did_you_mean(value, choices)}")
         if quantity is None or value == "auto":
             continue
         if isinstance(value, bool | str):
@@ -234,12 +236,6 @@ def _read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str
         following["vertical.kind"] = tuple("table" if vertical else "none" for _, vertical in pairs)
         following[VERTICAL_FILE] = tuple(vertical for _, vertical in pairs)
     return tuple(horizontal for horizontal, _ in pairs), following
-
-
-def hint(name: object, known: Iterable[str]) -> str:
-    """The nearest known name as the end of a message; nothing where none is near."""
-    near = did_you_mean(name, known) if isinstance(name, str) else ""
-    return f"; {near}" if near else ""
 
 
 def read_inline(model: type[ModelT], given: Mapping[str, Any], example: str) -> ModelT:

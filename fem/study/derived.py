@@ -17,7 +17,7 @@ from warnings import catch_warnings, simplefilter
 from fem.case.case import Case
 from fem.case.overrides import keys_in_effect
 from fem.case.tables.all_tables import TABLES
-from fem.case.validation import CaseError, known_keys
+from fem.case.validation import CaseError, known_keys, told_as
 from fem.study.axes import AxisError
 
 Tree = tuple[Any, ...]
@@ -164,7 +164,7 @@ def read_derived(
     """
     expressions: dict[str, Expression] = {}
     for key, text in content.items():
-        try:
+        with told_as(f"[derived] {key!r} "):
             if key in varied:
                 raise AxisError("varies already; it cannot follow another key as well")
             check_key(key)
@@ -173,14 +173,10 @@ def read_derived(
                     f"must be an expression in quotes, got {text!r}; a fixed value goes under [set]"
                 )
             expressions[key] = parse_expression(text)
-        except (AxisError, ExpressionError) as error:
-            raise CaseError(f"[derived] {key!r} {error}") from None
     for key, expression in expressions.items():
         for name in sorted(expression.keys - expressions.keys()):
-            try:
+            with told_as(f"[derived] {key!r} refers to {name!r}, which "):
                 check_reference(name)
-            except AxisError as error:
-                raise CaseError(f"[derived] {key!r} refers to {name!r}, which {error}") from None
     ordered: dict[str, Expression] = {}
     while left := {key: one for key, one in expressions.items() if key not in ordered}:
         ready = {key: one for key, one in left.items() if not one.keys & left.keys()}
@@ -197,10 +193,8 @@ def with_derived(values: Mapping[str, Any], derived: Mapping[str, Expression], b
     complete = dict(values)
     for derived_key, expression in derived.items():
         known = {key: number_of(key, complete, base) for key in expression.keys}
-        try:
+        with told_as(f"[derived] {derived_key} "):
             value = expression.value(known)
-        except ExpressionError as error:
-            raise CaseError(f"[derived] {derived_key} {error}") from None
         complete[derived_key] = int(value) if derived_key in _WHOLE_KEYS and value == int(value) else value
     return complete
 

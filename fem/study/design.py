@@ -257,7 +257,7 @@ class Design:
     @cached_property
     def make(self) -> CaseMaker:
         """Makes the cases of runs; picklable, and small."""
-        relative = frozenset(quantity.key for quantity in self.random if quantity.relative)
+        relative = frozenset(quantity.key for quantity in self.random if quantity.spread.relative)
         return CaseMaker(self.base.without_fields(), self.derived, relative)
 
     def case(self, cell: int) -> Case:

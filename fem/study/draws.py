@@ -63,11 +63,6 @@ class RandomQuantity:
     choices: Axis | None = None
 
     @property
-    def relative(self) -> bool:
-        """Whether it is a factor on the value that the key has anyway."""
-        return self.spread.relative
-
-    @property
     def definition(self) -> Any:
         """As the file gives it; pairs of motions as pairs."""
         if self.choices is None:

@@ -186,7 +186,8 @@ class LoggedRuns(Generic[ItemT]):
     work: ChunkWork | None = None  #: what is done with some items in place of their runs
     logged: Callable[[Row], Row] = lambda row: row  #: a row as the log holds it
     note: Callable[[str], None] = lambda line: None  #: called with every line of the log, old and new
-    told: Callable[[int], None] = lambda count: None  #: called with the size of every batch before its runs
+    #: called with what they are and the size of every batch, before its runs
+    told: Callable[[str, int], None] = lambda what, count: None
     more: Callable[[int], float] = lambda count: 0.0  #: how many are expected to follow a batch of this size
     #: of the log, by what tells apart
     lines: dict[tuple[Any, ...], str] = field(default_factory=dict, init=False)
@@ -229,7 +230,7 @@ class LoggedRuns(Generic[ItemT]):
                 items = [item for item in wanted if not self._recalled(item, earlier)]
                 if runner.stop():
                     break
-                self.told(len(items))
+                self.told(self.what, len(items))
                 asked = self.what, items, self.make, self.model_of, self.work
                 for chunk, rows in runner.rows(
                     *asked, takes_long=self.work is not None, more=self.more(len(items))

@@ -73,7 +73,7 @@ def _compute(
     #: keys that are drawn, and those that follow the motion of a draw
     following = [*ensemble.motions.following] if ensemble.motions else []
     drawn = [*(quantity.key for quantity in ensemble.random), *following]
-    keys = [*(f"{one.key}{' factor' * one.relative}" for one in ensemble.random), *following]
+    keys = [*(f"{one.key}{' factor' * one.spread.relative}" for one in ensemble.random), *following]
     columns: Columns = dict.fromkeys(("point", "draw", "replicate"), int)
     columns |= dict.fromkeys((*keys, *ensemble.unknown), str) | SHOWN
 

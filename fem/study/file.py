@@ -17,7 +17,7 @@ from fem.case.overrides import keys_in_effect
 from fem.case.tables.links import ROWS
 from fem.case.tables.quantities import SLIP_LIMIT
 from fem.case.tables.table import CaseTable, OneLine
-from fem.case.validation import CaseError, problem_lines, read_table
+from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table, told_as
 from fem.runtime.intervals import least_draws
 from fem.runtime.left import left_words
 from fem.study.axes import (
@@ -27,7 +27,6 @@ from fem.study.axes import (
     check_varied,
     field_of,
     first_motion,
-    hint,
     read_axis,
     set_axis,
 )
@@ -50,10 +49,8 @@ ReadT = TypeVar("ReadT")
 def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT]) -> StudyT:
     """Parse the file of a study, and have `read` make it; CaseError with a line for each reason why not."""
     data = parse_case(origin)
-    try:
+    with told_as(f"{origin.place}: ", of=CaseError):
         return read(data, origin)
-    except CaseError as error:
-        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
 
 
 def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:
@@ -75,7 +72,7 @@ def split_tables(
             raise CaseError(f"[{name}] {words}")
         if name not in known:
             raise CaseError(
-                f"[{name}] unknown table{hint(name, known)} (known: {', '.join(known)}); "
+                f"[{name}] unknown table{did_you_mean(name, known)} (known: {', '.join(known)}); "
                 'dotted keys stand in quotes, such as "contact.mu_static"'
             )
     for key in heading:
@@ -252,7 +249,9 @@ def _read_sweep(data: Mapping[str, Any], origin: Origin) -> Sweep:
     if threshold is not None:
         named, along = f"[threshold] axis {threshold.axis!r}", known.get(threshold.axis)
         if along is None:
-            raise CaseError(f"{named} is none of the axes{hint(threshold.axis, known)} (axes: {axis_list})")
+            raise CaseError(
+                f"{named} is none of the axes{did_you_mean(threshold.axis, known)} (axes: {axis_list})"
+            )
         if not along.is_numeric:
             raise CaseError(f"{named} needs two or more numbers that rise")
         if any(isinstance(value, int) for value in along.values):
@@ -286,7 +285,9 @@ def _maps(content: Mapping[str, Any], known: Mapping[str, Axis], axis_list: str)
     maps = read_as("maps", MapChoice, content)
     for key in (maps.x, maps.y, *maps.fixed):
         if key is not None and key not in known:
-            raise CaseError(f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {axis_list})")
+            raise CaseError(
+                f"[maps] {key!r} is none of the axes{did_you_mean(key, known)} (axes: {axis_list})"
+            )
     for key, value in maps.fixed.items():
         if value not in known[key].values:
             listed = ", ".join(map(str, known[key].values))
@@ -319,7 +320,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     def drawn_key(key: str, value: Any) -> RandomQuantity:
         check_key(key)
         quantity = read_random(key, value)
-        if key in keys and not quantity.relative:
+        if key in keys and not quantity.spread.relative:
             raise AxisError("is an axis as well; give the scatter about its values with relative = true")
         return quantity
 
@@ -341,7 +342,7 @@ def _read_ensemble(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         raise CaseError(f'[set] "solver.model" must be "rigid" or "reduced": {why}')
     varied = [*keys, *(quantity.key for quantity in random)]
     _require_verticals(motions, varied, base)
-    drawn = [quantity.key for quantity in random if not quantity.relative]
+    drawn = [quantity.key for quantity in random if not quantity.spread.relative]
     require_once(tables.get("set", {}), [*keys, *drawn, *derived], base)
     draws, replicates = heading.draws, 1 if heading.sampling == "independent" else heading.replicates
     replicates = len(motions.values) if motions else replicates

@@ -20,7 +20,7 @@ from fem.case.case import Case, case_hash
 from fem.case.data_files import as_named_from
 from fem.case.tables.unknown_inputs import excluded_values
 from fem.case.toml import toml_document, toml_value
-from fem.case.validation import CaseError
+from fem.case.validation import CaseError, told_as
 from fem.html.page import text_of
 from fem.model.geometry import build_container
 from fem.model.motion import build_motions, motion_result, peaks_in_run
@@ -37,7 +37,7 @@ from fem.run.described import sides_of
 from fem.run.expected import expected_s, expected_words, say_expected
 from fem.run.verdict import place_of
 from fem.runtime.identity import command_line
-from fem.study.axes import MOTION_FILE, VERTICAL_FILE, AxisError, read_axis
+from fem.study.axes import MOTION_FILE, VERTICAL_FILE, read_axis
 from fem.study.design import Design, Item
 from fem.study.driver import (
     COMPLETED,
@@ -229,10 +229,8 @@ def run_hall(
             trusted = origin.trusted | {MOTION_FILE, VERTICAL_FILE}
             own = base.from_origin(replace(origin, trusted=trusted, allow_outside=True))
             files = [[as_named_from(base.folder, name.strip()) for name in one.split(",")] for one in motions]
-            try:
+            with told_as("--motion "):
                 axis = read_axis(MOTION_FILE, [pair if len(pair) > 1 else pair[0] for pair in files])
-            except AxisError as error:
-                raise CaseError(f"--motion {error}") from None
             pairs = read_motion_set(own, axis, runner)
         asked: dict[str, Any] = {"pairs": pairs, "named": motions, "one_side": one_side}
         hall = Hall(

@@ -15,7 +15,7 @@ from typing import Any, get_args
 from fem.case.files import kind_of, other_kind
 from fem.case.overrides import parse_override
 from fem.case.tables.all_tables import TABLES
-from fem.case.validation import CaseError, known_keys, quantity_of
+from fem.case.validation import CaseError, known_keys, quantity_of, told_as
 from fem.records.source import decoded
 from fem.records.table import UserTable, number_in
 from fem.results.figures import TURNED
@@ -108,10 +108,8 @@ def read_hall(path: Path) -> HallFile:
     """Read a list; its rows are read on first use. CaseError for what is no list, or a column that cannot be one."""
     if (kind := kind_of(path)) not in ("", "list"):
         raise CaseError(other_kind(path, kind))
-    try:
+    with told_as(f"{path} ", "; a list of containers is needed"):
         text = decoded(read_regular(path, LARGEST_FILE))
-    except ValueError as error:
-        raise CaseError(f"{path} {error}; a list of containers is needed") from None
     if text is None or "\0" in text:
         raise CaseError(f"{path}: not a text file; save the list as CSV")
     table = UserTable(str(path), text, CaseError)

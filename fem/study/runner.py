@@ -13,7 +13,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
-from typing import Any, Generic, Literal, TypedDict, Unpack, overload
+from typing import Any, Literal, TypedDict, Unpack, overload
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from fem.run.expected import OF_A_SECOND, say_expected
 from fem.run.recorder import Recorder
 from fem.run.simulation import run_without_history, simulate
 from fem.run.verdict import verdict_of
+from fem.runtime.arrays import FloatArray
 from fem.runtime.progress import Reporter, ScreenReporter, clock_time, watched
 from fem.runtime.signals import stop_requested
 from fem.runtime.threads import cores
@@ -101,32 +102,29 @@ class Runner:
         total, done, failed, began = sum(map(len, by_model.values())), 0, 0, time.perf_counter()
         #: when some were done, after whatever was compiled, and what all until then cost [s]
         marks: list[tuple[float, float]] = []
-        foretold, group = False, _Group[ItemT]([], 1)
-        follow = " with those that may follow" * (more > 0.0)
+        foretold, follow = False, " with those that may follow" * (more > 0.0)
 
         def left() -> float | None:
             """Wall time of those that are not done, and of those that are expected to follow [s]."""
             if not marks:
                 return None
-            now, worked = marks[-1]
-            half = (
-                bisect(marks, (0.5 * (marks[0][0] + now), math.inf)) - 1
-            )  # what is loaded first takes its time
-            since, before = marks[half]
+            # by the later half: what is loaded first takes its time
+            (first, _), (now, worked) = marks[0], marks[-1]
+            since, before = marks[bisect(marks, (0.5 * (first + now), math.inf)) - 1]
             if worked <= before:
                 return None
             counts = [more, *(len(by_model[one]) * OF_A_SECOND[one] / OF_A_SECOND[model] for one in models)]
-            rest = group.left + sum(counts) * group.mean
+            rest = cost_left(costs) + sum(counts) * float(np.nanmean(costs))
             return rest * (now - since) / (worked - before)
 
         def told() -> str:
             """How much is done, how fast, and the time left."""
             elapsed, lost = time.perf_counter() - began, f", {failed} failed" if failed else ""
-            rate, seconds = done / elapsed if elapsed > 0.0 else 0.0, left() if done < total else 0.0
             if done == total:
                 return f"{total} {what} in {clock_time(elapsed)}{lost}"
+            seconds = left()
             words = "time left unknown" if seconds is None else f"{clock_time(seconds)} left"
-            return f"{done} of {total} {what}, {rate:.3g} per s, {words}{follow}{lost}"
+            return f"{done} of {total} {what}, {done / elapsed:.3g} per s, {words}{follow}{lost}"
 
         self.reporter.start(0.0)
         models = sorted(by_model, key=[*CASES_AT_A_TIME].index)
@@ -139,19 +137,22 @@ class Runner:
                     usual, workers, finish = CASES_AT_A_TIME[model], sum(pool.count for pool in pools), True
                     size = min(usual * workers // MANY_WORKERS, len(own) // (LEAST_CHUNKS * workers))
                     size = max(usual, size)
-                group = _Group(own, size)
+                places = {id(item): place for place, item in enumerate(own)}
+                costs: FloatArray = np.full(len(own), np.nan)  # of each of them; nan: it is not done [s]
                 options: dict[str, Any] = {"at_a_time": size, "stop": self.stop, "finish": finish}
                 for chunk, rows in hand_out(
-                    group.order(), partial(work or run_chunk, make), pools, **options
+                    spread(own, size), partial(work or run_chunk, make), pools, **options
                 ):
                     yield chunk[: len(rows)], rows
                     done, failed = done + len(rows), failed + sum(row["status"] == "failed" for row in rows)
-                    cost, now = group.note(chunk, rows), time.perf_counter()
-                    if done:
-                        marks.append((now, marks[-1][1] + cost if marks else 0.0))
+                    if rows:  # the median is without what was compiled; without times each costs one
+                        cost = float(np.median([row.get("wall_s", 1.0) for row in rows]))
+                        costs[places[id(chunk[0])] :][: len(rows)] = cost
+                        until = marks[-1][1] + cost * len(rows) if marks else 0.0
+                        marks.append((time.perf_counter(), until))
                     if done < total:
                         self.reporter.tell(told)
-                        measured = not foretold and marks and now > marks[0][0] + MEASURED_S
+                        measured = not foretold and marks and marks[-1][0] > marks[0][0] + MEASURED_S
                         if measured and (seconds := left()):
                             foretold = True  # said once, by what the first of all over the group took
                             say_expected(self.reporter, f"{total - done} more {what}{follow}", seconds)
@@ -194,50 +195,21 @@ class Runner:
                     yield number, row["found"]
 
 
-@dataclass(eq=False)
-class _Group(Generic[ItemT]):
-    """Items of one model, in chunks, and what those that are done cost.
+def spread(items: Sequence[ItemT], size: int) -> Iterator[ItemT]:
+    """Items in the order in which chunks of them are handed out: a few from all over first.
 
-    A few from all over the group are handed out first: neighbours are alike, and the last may take ten times as long as
-    the first.
+    Neighbours are alike, and the last may take ten times as long as the first.
     """
+    whole = len(items) // size
+    early = range(0, whole, whole // SAMPLED) if whole > MANY_CHUNKS else range(0)
+    for k in (*early, *(k for k in range(whole + 1) if k not in early)):
+        yield from items[k * size : (k + 1) * size]
 
-    items: list[ItemT]
-    size: int  #: of a chunk
 
-    def __post_init__(self) -> None:
-        starts = range(0, len(self.items), self.size)
-        self._places = {id(self.items[start]): k for k, start in enumerate(starts)}
-        self._counts = np.array([min(self.size, len(self.items) - start) for start in starts])
-        self._costs = np.full(len(starts), np.nan)  #: of an item, by chunk; nan: not done [s]
-
-    def order(self) -> Iterator[ItemT]:
-        """The items in the order in which they are handed out."""
-        whole = len(self.items) // self.size
-        early = range(0, whole, whole // SAMPLED) if whole > MANY_CHUNKS else range(0)
-        for k in (*early, *(k for k in range(len(self._costs)) if k not in early)):
-            yield from self.items[k * self.size : (k + 1) * self.size]
-
-    def note(self, chunk: Sequence[ItemT], rows: Sequence[Row]) -> float:
-        """Note what a chunk cost, without what was compiled in it; returns it [s]. Without times it is one an item."""
-        if not rows:
-            return 0.0
-        cost = float(np.median([row.get("wall_s", 1.0) for row in rows]))
-        self._costs[self._places[id(chunk[0])]] = cost
-        return cost * len(rows)
-
-    @property
-    def mean(self) -> float:
-        """Cost of an item that is done [s]."""
-        return float(np.nanmean(self._costs))
-
-    @property
-    def left(self) -> float:
-        """Cost of those that are not done, as their neighbours have it [s]."""
-        done, places = np.isfinite(self._costs), np.arange(len(self._costs))
-        if not done.any():
-            return 0.0
-        return float(self._counts[~done] @ np.interp(places[~done], places[done], self._costs[done]))
+def cost_left(costs: FloatArray) -> float:
+    """Cost of the items that are not done, whose own is nan, as their neighbours have it [s]."""
+    done, places = np.isfinite(costs), np.arange(costs.size)
+    return float(np.interp(places[~done], places[done], costs[done]).sum()) if done.any() else 0.0
 
 
 @dataclass

@@ -251,7 +251,7 @@ class Copies:
         }
         return added, values()
 
-    def compute(self, runner: Runner, path: Path, told: Callable[[int], None]) -> str:
+    def compute(self, runner: Runner, path: Path, told: Callable[[str, int], None]) -> str:
         """Compute the copies that the log at `path` does not hold; the rows of all, as a table.
 
         `told` is that of `LoggedRuns`.
@@ -373,7 +373,7 @@ def refine(
     wanted: Threshold,
     runs: Mapping[int, RunShown],
     path: Path,
-    told: Callable[[int], None],
+    told: Callable[[str, int], None],
 ) -> list[dict[str, Any]]:
     """Locate every change of outcome along the axis asked for: the rows of `thresholds.csv`, by `change_columns`.
 

@@ -153,8 +153,8 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     columns: Columns = {"cell": int} | dict.fromkeys((*keys, *sweep.derived), str) | FOUND
     further = [COPIES] * sweep.has_copies + [BETWEEN] * (sweep.threshold is not None)
     stages = NamedStages([CELLS, *further], runner.reporter)
-    told, path = partial(stages.begin, CELLS), place.path / ROWS
-    log = sweep.runs(what=CELLS, path=path, told=told, columns=columns, key=key, ids=1, note=note)
+    own: dict[str, Any] = {"told": stages.begin, "columns": columns, "key": key, "ids": 1, "note": note}
+    log = sweep.runs(what=CELLS, path=place.path / ROWS, **own)
     place.write_result(begun.to_json())  # with the hash of the band: copies of another are gone
     with_band = (*columns, *BAND, *(WIDTH + axis.key for axis in sweep.axes if axis.is_numeric))
     table = place.path / TABLE
@@ -164,12 +164,10 @@ def _compute(sweep: Sweep, begun: SweepResult, place: ResultFolder, runner: Runn
     place.remove(TABLE)
     log.run(runner, [sweep.by_container(cells)])
     copies = Copies(sweep, runs) if sweep.has_copies and not stop() else None
-    told = partial(stages.begin, COPIES)
-    members = copies.compute(runner, place.path / MEMBERS, told) if copies else ""
+    members = copies.compute(runner, place.path / MEMBERS, stages.begin) if copies else ""
     changes, wanted = None, sweep.threshold
     if wanted is not None and not stop():
-        told = partial(stages.begin, BETWEEN)
-        changes = refine(runner, sweep, wanted, runs, place.path / TRIED, told)
+        changes = refine(runner, sweep, wanted, runs, place.path / TRIED, stages.begin)
     outcomes = Counter(run.outcome or FAILED for run in runs.values())
     result = replace(begun, rows=len(runs), outcomes=dict(sorted(outcomes.items())))
     if stop():

@@ -208,8 +208,7 @@ def check_paper(
     every = {claim.name: claim for claim in all_claims()}
     for name in only:
         if name not in every:
-            near = did_you_mean(name, every)
-            hint = f"; {near}" if near else ""
+            hint = did_you_mean(name, every)
             raise CaseError(f"--only: no such claim {name!r}{hint} (known: {', '.join(every)})")
     claims = [claim for name, claim in every.items() if not only or name in only]
     reporter = ScreenReporter(quiet=quiet)

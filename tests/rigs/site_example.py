@@ -20,6 +20,7 @@ from fem.seismic.action import SiteAction, eurocode_shape
 from fem.seismic.body import FloorAction, LooseBody
 from fem.site.methods import site_methods
 from fem.site.result import MOTIONS, RESULT_FILE, SiteBody, SiteMotion, SiteResult, SiteRun
+from fem.site.tables import LimitsTable
 
 SITE = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
 #: 0.06 (S_alpha S_beta)^0.55 with the plateau and the value at 1 s
@@ -34,6 +35,11 @@ STORED = SiteResult.from_json(
     json.loads((Path(__file__).parent / "site_result.json").read_text(encoding="utf-8"))
 )
 INPUTS, PERIODS = STORED.inputs, np.array(STORED.action.periods_s)
+LIMITS = LimitsTable(
+    rotation_ratio=INPUTS.rotation_ratio_limit,
+    single_rotation_ratio=INPUTS.single_rotation_ratio_limit,
+    slip_m=INPUTS.slip_limit_m,
+)
 SENTENCES = {
     None: "Not valid: the set of motions fails its checks.",
     True: "Fulfilled under the stated rule: none of 112 runs overturned.",
@@ -111,7 +117,7 @@ def example(
     )
     kept, periods_s = tuple(runs) if valid else (), STORED.action.periods_s
     given = {"motions": motions, "periods_s": periods_s, "floor": floor, "runs": kept}
-    methods = site_methods(bodies=bodies, inputs=INPUTS, site=SITE, **given)
+    methods = site_methods(bodies=bodies, inputs=INPUTS, limits=LIMITS, site=SITE, **given)
     files = {name: text for number in range(1, 8) for name, text in site_motion(number)[1].items()}
     return replace(STORED, floor=floor, set=found, runs=kept, result=result, methods=methods), files
 

@@ -10,6 +10,7 @@ from small_site import SITE
 from fem.case.validation import CaseError
 from fem.html.page import Page, html_of, text_of
 from fem.seismic.methods import peak_rows
+from fem.site import size as sizes
 from fem.site.answer import answer_of
 from fem.site.methods import found_by_runs
 from fem.site.page import shown
@@ -24,7 +25,7 @@ from fem.site.result import (
     TwoDirections,
 )
 from fem.site.runs import key_of
-from fem.site.size import SizeAxis, next_values, size_axis, size_result, spaced
+from fem.site.size import SizeAxis, next_values, size_axis, spaced
 from fem.site.stages import REPETITIONS
 from fem.site.tables import LimitsTable
 
@@ -118,6 +119,12 @@ AG = "site.reference_acceleration_m_s2"
 STRENGTH = axis_of(AG, "reference acceleration", "m/s2", "largest", spaced(0.2, 6.0, 15))
 FRICTION = axis_of("contact.mu_static", "static friction", "", "window", spaced(0.1, 0.8, 15))
 BOXES = axis_of("container.boxes", "number of boxes", "", "largest", map(float, range(1, 7)), whole=True)
+
+
+def size_result(axis: SizeAxis, answers: dict[float, SiteAnswer]) -> SizeResult:
+    """The result for the answers at some values of an axis."""
+    begun = SizeResult(key=axis.key, unit=axis.unit, low=axis.values[0], high=axis.values[-1])
+    return sizes.size_result(axis, answers, begun)
 
 
 def size(axis: SizeAxis, fulfils: Callable[[float], bool]) -> SizeResult:

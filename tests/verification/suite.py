@@ -48,7 +48,7 @@ def chosen_checks(*, quick: bool, topics: Sequence[str] = ()) -> list[Check]:
     known = list(dict.fromkeys(check.topic for check in CHECKS))
     for name in topics:
         if name not in known:
-            hint = f"; {near}" if (near := did_you_mean(name, known)) else ""
+            hint = did_you_mean(name, known)
             raise CaseError(f"unknown topic {name!r}{hint} (known: {', '.join(known)})")
     wanted = topics or known
     return [check for check in CHECKS if check.topic in wanted and (check.quick or not quick)]

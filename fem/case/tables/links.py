@@ -13,7 +13,7 @@ from pydantic import Field, Strict
 
 from fem.case.tables import quantities as q
 from fem.case.tables.neighbours import NeighbourTable, StruckTable, beside_of, outermost, top_of
-from fem.case.tables.problem import Rule, either, left_out, refused
+from fem.case.tables.problem import Rule, left_out, refused
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 
@@ -26,8 +26,6 @@ class StopTable(StruckTable):
     strength_N: Annotated[float, q.LINK_FORCE] | None = optional_key(
         "force at which it breaks, for good; default: it does not", 5e5
     )
-
-    rules = (either("stop.restitution", "damping_ratio"),)
 
     @property
     def slack(self) -> float:

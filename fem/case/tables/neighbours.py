@@ -13,7 +13,7 @@ from pydantic import Strict
 
 from fem.case.tables import quantities as q
 from fem.case.tables.boxes import centroid_at
-from fem.case.tables.problem import Rule, either, left_out
+from fem.case.tables.problem import Rule, left_out
 from fem.case.tables.table import CaseTable, case_key, optional_key
 
 MOST_NEIGHBOURS = 5
@@ -42,6 +42,14 @@ class StruckTable(CaseTable):
     )
     mu: Annotated[float, q.FRICTION] = case_key("of friction along its face", 0.0)
 
+    rules = (
+        Rule(
+            ".restitution",
+            lambda struck: struck.restitution is None or struck.damping_ratio is None,
+            "and damping_ratio say the same; keep one of them",
+        ),
+    )
+
 
 class NeighbourTable(StruckTable):
     """Another container beside it, on the same floor; equal, or that of another case, but for what is given here.
@@ -60,8 +68,6 @@ class NeighbourTable(StruckTable):
     mass_kg: Annotated[float, q.MASS] | None = optional_key("of one box with its fill", 2500.0)
     centroid_m: Annotated[float, q.LENGTH] | None = optional_key("height of the mass centre in its box", 0.5)
     wall_m: Annotated[float, q.WALL] | None = optional_key("of the shell", 0.008)
-
-    rules = (either("neighbour.restitution", "damping_ratio"),)
 
 
 def case_of(case: Any, neighbour: NeighbourTable | None) -> dict[str, Any]:

@@ -73,16 +73,6 @@ def file_beside(place: str, *, below: bool = True) -> Rule:
     return refused(place, reason)
 
 
-def either(place: str, other: str) -> Rule:
-    """Of two keys of a table at most one is given."""
-    _, _, key = place.rpartition(".")
-    return Rule(
-        place,
-        lambda table: getattr(table, key) is None or getattr(table, other) is None,
-        f"and {other} say the same; keep one of them",
-    )
-
-
 def one_of(place: str, *others: str) -> Rule:
     """Of some keys of a table exactly one is given."""
     _, _, key = place.rpartition(".")

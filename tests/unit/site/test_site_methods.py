@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from site_example import INPUTS, PERIODS, SITE, site_body, site_motion
+from site_example import INPUTS, LIMITS, PERIODS, SITE, site_body, site_motion
 
 from fem.site.methods import floor_action, loose_body, site_methods
 from fem.site.result import FloorResult
@@ -13,9 +13,8 @@ from fem.site.result import FloorResult
 def rows_of(bodies, inputs, floor=None):
     """The methods for some bodies, under one motion."""
     motion, periods = site_motion(1)[0], PERIODS.tolist()
-    return site_methods(
-        bodies=bodies, inputs=inputs, site=SITE, motions=[motion], periods_s=periods, floor=floor, runs=[]
-    )
+    own = {"site": SITE, "motions": [motion], "periods_s": periods, "floor": floor}
+    return site_methods(bodies=bodies, inputs=inputs, limits=LIMITS, runs=[], **own)
 
 
 def test_a_body_keeps_its_inertia_and_has_the_least_friction():

@@ -10,10 +10,11 @@ from runs import STACK
 
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
+from contact.stepping.integrator import REACHED
 from fem.model.container import discretise
 from fem.model.model import build_model
 from fem.response.lasting import coexistences, drop_outs, frequencies_of
-from fem.response.orbit import begin_drive, carry_drive, follow_periods, step_until
+from fem.response.orbit import begin_drive, carry_drive, follow_periods, step_to
 from fem.response.request import ResponseRequest
 from fem.response.run import Task, computed, follow_point, plan_of
 
@@ -52,7 +53,7 @@ def swept(request):
 def started(case, container):
     """The container as the case begins, at its first section."""
     lead, until = begin_drive(case, container)
-    assert step_until(lead, until) == "completed"
+    assert step_to(lead, until)[0] == REACHED
     return carry_drive(case, container, lead)
 
 
