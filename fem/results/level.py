@@ -6,7 +6,7 @@ from enum import StrEnum
 from fem.case.tables.input_ranges import TOLERANCE
 from fem.case.uncertainty import InputChange
 from fem.results.figures import RunFigures
-from fem.results.outcome import ENDINGS, NOT_STANDING, ROCKING, Ending, Outcome
+from fem.results.outcome import ENDINGS, NOT_STANDING, ROCKING, SLIDING, Ending, Outcome
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
@@ -64,8 +64,12 @@ def in_a_word(result: RunResult) -> str:
     verdict, level = result.verdict or Verdict(), level_of(result)
     if level not in (Level.STANDS, Level.CUT) or verdict.still_turned or verdict.still_sliding_m_s:
         return level
-    ends = " until its run ends" if level == Level.CUT else ""
-    return f"{STANDING[verdict.outcome or Outcome.REST]}{ends}{', may rock' if may_rock(verdict) else ''}"
+    word = STANDING[verdict.outcome or Outcome.REST]
+    word += " until its run ends" if level == Level.CUT else ""
+    if may_rock(verdict):
+        return f"{word}, may rock"
+    slides = verdict.outcome == Outcome.REST and not {*SLIDING}.isdisjoint((verdict.band or Band()).outcomes)
+    return f"{word}, may slide" if slides else word
 
 
 def is_cut(result: RunResult) -> bool:

@@ -172,6 +172,15 @@ def test_what_falls_under_a_motion_that_is_hardly_another_one_is_not_called_sure
             "rests, may rock",
             "rests; slip 200 mm; in var",
         ),
+        ({}, {"outcome": "rest", "rotation_ratio": 0.01}, {}, "stands", "rests", "rests; slip 200 mm"),
+        (
+            {"outcome": "slide"},
+            {"outcome": "rest", "rotation_ratio": 0.01},
+            {},
+            "stands",
+            "rests, may slide",
+            "rests",
+        ),
         # boxes of a stack that slide on one another
         ({}, {"boxes": APART}, {"place_m": 0.3}, "leaves its place", "leaves its place", BOX),
         ({}, {"boxes": APART}, {}, "stands", "slides, rocks and stands", BETWEEN),
