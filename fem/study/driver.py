@@ -50,7 +50,7 @@ class StudyOptions(TypedDict, total=False):
 class StudyResult(JsonBlock):
     """What the marking file of every study holds."""
 
-    written_where_given = frozenset({"missing", "warnings"})
+    written_where_given = frozenset({"missing"})
     status: str = "running"  #: running | interrupted | failed | completed
     answer: str | None = None  #: in one sentence; None until the study is finished, or where it has none
     missing: str | None = None  #: what an interrupted study has not come to, in words
