@@ -138,7 +138,7 @@ BUDGET = {
     "site": ("fem/site", 4_305, 109),
     "cli": ("fem/cli fem/__init__.py fem/__main__.py", 1_803, 42),
     "product": ("mesh contact fem", 52_262, 1_534),
-    "tests": ("tests", 36_424, 2_144),
+    "tests": ("tests", 36_425, 2_144),
 }
 
 

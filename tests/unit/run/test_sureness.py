@@ -195,7 +195,7 @@ def test_the_gravest_of_run_band_and_margin_is_the_level_and_is_said_first(
     assert line(result, "does").startswith(said)
 
 
-FOUND = ({}, {"max_slip_m": 0.7}, FAILED)
+FOUND = ({}, {"max_slip_m": 0.7}, FAILED, CRUSHED)
 MARGINS = (margin_at(None), margin_at(1.04), margin_at(1.3, "variations"))
 
 
@@ -206,6 +206,7 @@ def test_the_first_two_lines_have_at_most_45_words_none_of_which_a_client_does_n
     for found, still, place, margin in product(FOUND, (None, 0.3), (None, 0.1, 0.6), MARGINS):
         for stack in (None, APART) if outcome == "slide-rock" else (None,):
             judgement = verdict((HALF, found), (STIFF, {}), outcome=outcome, boxes=stack)
+            margin = margin_at(1.0, "variations") if found is CRUSHED else margin
             levels = {"still_turned": still, "place_m": place, "margin": margin}
             said = RunResult(
                 status="completed", verdict=replace(judgement, **levels), static=static, motion=short
