@@ -18,7 +18,7 @@ from fem.html.units import typeset
 from fem.report.animation import colour_scale, packed
 from fem.results.errors import FolderError
 from fem.results.figures import Place, Shown, figures_of
-from fem.results.level import REGIME_UNSURE, SURE, UNSURE
+from fem.results.level import OF_THE_END, REGIME_UNSURE, SURE, UNSURE
 from fem.runtime import units
 from fem.runtime.identity import command_line
 from fem.study.axes import axis_label
@@ -29,7 +29,7 @@ from fem.study.sweep_table import RATIOS, SweepTable
 QUANTITIES = figures_of(Place.MAP) | RATIOS | {"wall_s": Shown("computing time", units.SECONDS)}
 #: shown by a colour for every word; the last in folders of earlier versions
 FLAGS = (("overturned_share", "variations that do not stand"), ("sure", "how sure"), ("unsure", "unsure"))
-SURENESS = {SURE: "#e3e8ee", REGIME_UNSURE: "#f2c879", UNSURE: "#c2410c", "not tried": "#ffffff"}
+SURENESS = {SURE: "#e3e8ee", OF_THE_END: "#f2c879", UNSURE: "#c2410c", "not tried": "#ffffff"}
 NEEDED = 3  #: of these, in the order above: without them no page is made
 MOST_BYTES = 3_600_000  #: of all columns, in base64
 COLOURS = 64
@@ -124,7 +124,7 @@ def _sureness(table: SweepTable) -> list[dict[str, Any]]:
     short = [[key if key.startswith("joints.") else key.rpartition(".")[2] for key in one] for one in keys]
     deciding = [" ".join(one) or "-" for one in short]
     columns = [
-        _words("sure", "how sure", sure, SURENESS),
+        _words("sure", "how sure", np.where(sure == REGIME_UNSURE, OF_THE_END, sure), SURENESS),
         _words("decided_by", "decided by", np.array(deciding), dict.fromkeys(sorted(set(deciding)), "")),
     ]
     if (shares := shares_of(table)) is not None:

@@ -10,6 +10,9 @@ from fem.results.outcome import ENDINGS, NOT_STANDING, ROCKING, SLIDING, Ending,
 from fem.results.run_result import Band, ChangedRun, RunResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
+OF_THE_END = (
+    "sure of the end"  #: the second of these, as people read it: all variations end alike, and move otherwise
+)
 #: factor below which a motion is hardly another one: by such changes "sure" was tried (`bench.py words`)
 SAME_MOTION = 1.05
 

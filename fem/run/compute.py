@@ -6,7 +6,6 @@ finished without them.
 """
 
 import importlib
-import math
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -44,7 +43,7 @@ from fem.run.opened import plotted
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress, simulate
-from fem.run.verdict import energy_of, joint_demands, numerics_of, verdict_of
+from fem.run.verdict import energy_of, held_by, joint_demands, numerics_of, verdict_of
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter
@@ -129,21 +128,20 @@ def stepped(
     stress = recorder.largest_von_mises if case.solver.model != "rigid" else None
     verdict = verdict_of(model, history, stress)
     heights = heights_of_links(case, container.elements.nodes[container.nodes])
-    links = []
-    for link, height, record in zip(case.links, heights, model.run.links[len(case.neighbour) :], strict=True):
-        whole = math.isinf(record.broken_at)
-        links.append(
-            LinkResult(
-                side=link.side,
-                height_m=height,
-                neighbour=link.neighbour if isinstance(link, TieTable) else None,
-                max_force_N=float(record.max_force),
-                hits=int(record.hits),
-                largest_closing_velocity_m_s=float(record.largest_closing_velocity),
-                gap_left_m=float(record.least_gap) if whole and math.isfinite(record.least_gap) else None,
-                broken_at_s=None if whole else float(record.broken_at),
-            )
+    held = (held_by(model) or ())[len(case.neighbour) :]
+    links = [
+        LinkResult(
+            side=link.side,
+            height_m=height,
+            neighbour=link.neighbour if isinstance(link, TieTable) else None,
+            max_force_N=one.max_force_N or 0.0,
+            hits=int(one.hits or 0),
+            largest_closing_velocity_m_s=one.largest_closing_velocity_m_s or 0.0,
+            gap_left_m=one.gap_left_m,
+            broken_at_s=one.broken_at_s,
         )
+        for link, height, one in zip(case.links, heights, held, strict=True)
+    ]
     result = replace(
         result,
         status=end.status,

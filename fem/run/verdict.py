@@ -191,7 +191,8 @@ def verdict_from(
 def _still_sliding(case: Case, time: np.ndarray, slip: np.ndarray) -> float | None:
     """Speed of the last two samples of one that slides on by itself [m/s]; None where it hardly does.
 
-    On a level floor friction stops it over v^2/(2 mu g). Under a harmonic motion it slides to and fro all the time.
+    On a level floor, friction stops it within v^2/(2 mu g). Under a harmonic motion it slides back and forth, and its
+    speed at the end says nothing.
     """
     if len(time) < 2 or (case.motion.kind == "harmonic" and case.floor.slope == 0.0):
         return None
