@@ -35,7 +35,7 @@ def test_cells_carry_their_outcomes_and_values(folder):
     assert data["marked"] == "the paper's example"
     np.testing.assert_allclose(column(data, "max_slip_m")[:5], 0.001 * np.arange(5), rtol=1e-6)
     assert np.isnan(column(data, "rotation_ratio")[5])
-    assert words_in(data, "sure") == ["sure", "regime unsure", "unsure", "sure", "sure", "unsure"]
+    assert words_in(data, "sure") == ["sure", "sure of the end", "unsure", "sure", "sure", "unsure"]
     assert words_in(data, "decided_by") == ["-", "-", "mu_kinetic start", "-", "-", "-"]
     assert not [one["name"] for one in data["columns"] if one["name"] == "impacts"]  # nothing was found of it
 
